@@ -1,0 +1,56 @@
+"""A mesh of cells with one value per point: the other kind of field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import FieldError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellMesh:
+    """Tetrahedra and hexahedra with one value per point.
+
+    points: (n, 3) float64, world.
+    tets: (m, 4) int32, corners positively oriented or not: kernels orient them by volume.
+    hexes: (h, 8) int32, VTK order: 0-3 around the bottom, 4-7 above them.
+    values: (n,) float32 or float64; a non-finite value is outside.
+    unit: of the points, "" where the file does not say.
+    field_name: the point field the values came from.
+    cell_counts: cells of the file by type, before wedges and pyramids were split.
+    warnings: what the reader wants its user to know.
+    """
+
+    points: npt.NDArray[np.float64]
+    tets: npt.NDArray[np.int32]
+    hexes: npt.NDArray[np.int32]
+    values: npt.NDArray[Any]
+    unit: str = ""
+    field_name: str = ""
+    cell_counts: dict[str, int] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        if self.points.shape != (n, 3) or self.points.dtype != np.float64:
+            raise FieldError("points must be (n, 3) float64")
+        if self.values.shape != (n,) or self.values.dtype.name not in ("float32", "float64"):
+            raise FieldError(f"values must be {n} float32 or float64, one per point")
+        for name, cells, corners in (("tets", self.tets, 4), ("hexes", self.hexes, 8)):
+            if cells.ndim != 2 or cells.shape[1] != corners or cells.dtype != np.int32:
+                raise FieldError(f"{name} must be (m, {corners}) int32")
+            if cells.size and (cells.min() < 0 or cells.max() >= n):
+                raise FieldError(f"{name} name a point outside 0..{n - 1}")
+        if not len(self.tets) and not len(self.hexes):
+            raise FieldError("a mesh needs at least one tetrahedron or hexahedron")
+        for array in (self.points, self.tets, self.hexes, self.values):
+            array.flags.writeable = False
+
+    @property
+    def cells(self) -> int:
+        """Cells that are contoured: tetrahedra and hexahedra."""
+        return len(self.tets) + len(self.hexes)

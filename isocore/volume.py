@@ -1,0 +1,107 @@
+"""A volume: samples on a grid, and where that grid lies in the world.
+
+The conventions of the whole program stand here and nowhere else:
+
+* Index (i, j, k), i fastest in memory. Nothing is transposed.
+* Inside means ``sample >= isovalue``, on the scaled value ``slope * stored + intercept``. A non-finite
+  sample is outside.
+* Samples stay in the file's type; slope and intercept move the isovalue instead (`stored_isovalue`).
+* Triangles turn counter-clockwise seen from outside; outside is the lower side.
+* A crossed grid edge carries one vertex, at least 2^-10 of the edge away from both ends.
+* Voxel centres are the samples: index (0, 0, 0) is the centre of the first voxel.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import FieldError
+
+Space = Literal["ras", "lps", "las", "index", "native"]
+
+#: The sample types the kernels read as stored; every other type is converted by its reader.
+SAMPLE_TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Volume:
+    """Samples on a grid, and where that grid lies.
+
+    samples: (nx, ny, nz), one of SAMPLE_TYPES, native byte order, Fortran order (i fastest).
+    slope, intercept: value = slope * stored + intercept; slope is finite and not zero.
+    affine: (4, 4) float64, index (i, j, k, 1) to world.
+    space: what world means: "ras", "lps", "las", or "native" where the file does not say.
+    unit: of the world, "mm", or "" where the file does not say.
+    warnings: what the reader wants its user to know.
+    """
+
+    samples: npt.NDArray[Any]
+    slope: float = 1.0
+    intercept: float = 0.0
+    affine: npt.NDArray[np.float64] = None  # type: ignore[assignment]  # replaced by the identity below
+    space: Space = "native"
+    unit: str = ""
+    warnings: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        samples = self.samples
+        if samples.ndim != 3:
+            raise FieldError(f"a volume needs three axes, this one has {samples.ndim}")
+        if min(samples.shape) < 2:
+            raise FieldError(f"a volume needs two samples per axis, this one has {_times(samples.shape)}")
+        if samples.dtype.name not in SAMPLE_TYPES or not samples.dtype.isnative:
+            raise FieldError(f"samples of type {samples.dtype} cannot be contoured; use one of {', '.join(SAMPLE_TYPES)}")
+        if not samples.flags.f_contiguous:
+            raise FieldError("samples must be in Fortran order (i fastest)")
+        if not (math.isfinite(self.slope) and math.isfinite(self.intercept) and self.slope != 0):
+            raise FieldError(f"slope {self.slope:g} and intercept {self.intercept:g} do not scale the samples")
+        affine = np.eye(4) if self.affine is None else np.array(self.affine, dtype=np.float64)
+        if affine.shape != (4, 4) or not np.isfinite(affine).all():
+            raise FieldError("the affine must be a finite 4x4 matrix")
+        if abs(np.linalg.det(affine[:3, :3])) < 1e-30:
+            raise FieldError("the affine is singular: an axis has no length or two axes coincide")
+        affine.flags.writeable = False
+        samples.flags.writeable = False
+        object.__setattr__(self, "affine", affine)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Samples per axis (nx, ny, nz)."""
+        nx, ny, nz = self.samples.shape
+        return nx, ny, nz
+
+    @property
+    def spacing(self) -> tuple[float, float, float]:
+        """Length of one index step along each axis, in world units."""
+        x, y, z = np.sqrt((self.affine[:3, :3] ** 2).sum(axis=0)).tolist()
+        return x, y, z
+
+    @property
+    def inside_is_below(self) -> bool:
+        """True where a negative slope makes a low stored sample a high value."""
+        return self.slope < 0
+
+    def stored_isovalue(self, isovalue: float) -> float:
+        """The isovalue in the samples' stored scale.
+
+        A stored integer whose scaled value is the isovalue exactly is returned exactly, so that rounding in the
+        division cannot move a sample to the other side.
+        """
+        stored = (isovalue - self.intercept) / self.slope
+        nearest = float(round(stored)) if math.isfinite(stored) else stored
+        if self.slope * nearest + self.intercept == isovalue:
+            return nearest
+        return stored
+
+    def scaled(self, stored: float) -> float:
+        """A stored sample's value."""
+        return self.slope * stored + self.intercept
+
+
+def _times(shape: tuple[int, ...]) -> str:
+    return "x".join(str(n) for n in shape)
