@@ -1,0 +1,1 @@
+"""isocore: isosurfaces of volumes and meshes."""

@@ -1,0 +1,24 @@
+// grid.hpp - A view of samples on a grid: i fastest, then j, then k.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace isocore {
+
+using Dims = std::array<std::size_t, 3>;
+
+template <class Sample>
+struct GridView {
+    const Sample* data;
+    Dims dims;
+
+    std::size_t index(std::size_t i, std::size_t j, std::size_t k) const { return i + dims[0] * (j + dims[1] * k); }
+    Sample at(std::size_t i, std::size_t j, std::size_t k) const { return data[index(i, j, k)]; }
+    const Sample* row(std::size_t j, std::size_t k) const { return data + index(0, j, k); }
+    // Samples between neighbours along an axis.
+    std::size_t step(int axis) const { return axis == 0 ? 1 : axis == 1 ? dims[0] : dims[0] * dims[1]; }
+    std::size_t size() const { return dims[0] * dims[1] * dims[2]; }
+};
+
+}  // namespace isocore

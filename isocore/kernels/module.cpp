@@ -1,0 +1,8 @@
+// module.cpp - The map of the compiled module: one line per algorithm. What each offers is typed in
+// isocore/_kernels.pyi; how arrays cross the border stands in python/arrays.hpp.
+#include "python/bindings.hpp"
+
+NB_MODULE(ISOCORE_MODULE, module) {
+    isocore::python::bind_processor(module);
+    isocore::python::bind_marching_cubes(module);
+}

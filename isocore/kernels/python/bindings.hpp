@@ -1,0 +1,13 @@
+// bindings.hpp - One function per algorithm that adds its names to the module. The files in this folder are
+// the only ones that know Python: parameters spell out dtype, rank, order and device; inputs are const and
+// never converted; kernels run with the GIL released; results move out without a copy.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace isocore::python {
+
+void bind_processor(nanobind::module_& module);
+void bind_marching_cubes(nanobind::module_& module);
+
+}  // namespace isocore::python
