@@ -1,5 +1,51 @@
+// marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads), once per sample type.
+#include "marching_cubes/marching_cubes.hpp"
+
+#include <algorithm>
+
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+
 namespace isocore::python {
-void bind_marching_cubes(nb::module_&) {}
+namespace {
+
+// float32 coordinates keep two vertices of one grid line apart up to this many samples.
+constexpr std::size_t kLongestForFloat = 8192;
+
+template <class Sample, class Coordinate>
+nb::object run(const VolumeArray<Sample>& samples, const marching_cubes::Options& options) {
+    marching_cubes::Mesh<Coordinate> mesh;
+    {
+        const nb::gil_scoped_release unlocked;
+        mesh = marching_cubes::march<Sample, Coordinate>(grid_view(samples), options);
+    }
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.ambiguous_faces,
+                          mesh.ambiguous_cells);
 }
+
+template <class Sample>
+void bind(nb::module_& module) {
+    module.def(
+        "marching_cubes",
+        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads) {
+            const marching_cubes::Options options{isovalue, below, capped, threads};
+            const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
+            return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
+        },
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1);
+}
+
+}  // namespace
+
+void bind_marching_cubes(nb::module_& module) {
+    bind<std::uint8_t>(module);
+    bind<std::int8_t>(module);
+    bind<std::uint16_t>(module);
+    bind<std::int16_t>(module);
+    bind<std::uint32_t>(module);
+    bind<std::int32_t>(module);
+    bind<float>(module);
+    bind<double>(module);
+}
+
+}  // namespace isocore::python

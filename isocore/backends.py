@@ -1,0 +1,126 @@
+"""The table of backends: how a field becomes a surface.
+
+A backend is a row. ``prepare(field, options)`` is where a method pays once per field and returns
+``extract(isovalue)``, where it pays per isovalue. To add one: a kernel folder with a glossary, its bindings, one row
+below; the contract tests find it by themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+from isocore import _kernels
+from isocore.cell_mesh import CellMesh
+from isocore.errors import OptionError
+from isocore.surface import Surface
+from isocore.volume import Volume
+
+Field = Volume | CellMesh
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What a user may ask of an extraction. A backend lists those it understands beyond the first three.
+
+    threads: at least 1. Results do not depend on it.
+    cap: close the surface at the volume's border.
+    normals: compute vertex normals.
+    """
+
+    threads: int = 1
+    cap: bool = False
+    normals: bool = False
+    block_size: int | None = None
+    max_error: str | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Extraction:
+    """A surface in the world, and what its method has to say about it, by the report's keys."""
+
+    surface: Surface
+    facts: dict[str, Any] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+
+
+Extract = Callable[[float], Extraction]
+
+
+@dataclass(frozen=True, slots=True)
+class Backend:
+    """One method. accepts: the field types it takes; options: the names in Options that it alone understands."""
+
+    name: str
+    title: str
+    accepts: tuple[type, ...]
+    prepare: Callable[[Any, Options], Extract]
+    options: frozenset[str] = frozenset()
+    cites: str = ""
+
+
+def _prepare_marching_cubes(volume: Volume, options: Options) -> Extract:
+    def extract(isovalue: float) -> Extraction:
+        stored = volume.stored_isovalue(isovalue)
+        vertices, triangles, faces, cells = _kernels.marching_cubes(
+            volume.samples, stored, volume.inside_is_below, options.cap, options.threads
+        )
+        surface = placed_surface(volume, vertices, triangles, options)
+        return Extraction(surface, {"ambiguous": {"faces": faces, "cells": cells}})
+
+    return extract
+
+
+def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Options) -> Surface:
+    """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
+    normals = None
+    if options.normals:
+        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, volume.inside_is_below, options.threads)
+    return Surface(vertices, triangles, normals).placed(
+        volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
+    )
+
+
+BACKENDS: dict[str, Backend] = {
+    backend.name: backend
+    for backend in (
+        Backend(
+            name="mc",
+            title="marching cubes",
+            accepts=(Volume,),
+            prepare=_prepare_marching_cubes,
+            cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
+        ),
+    )
+}
+
+
+def default_backend(field_type: type) -> str:
+    """The backend used when none is named: the first in the table that accepts the field."""
+    return next(name for name, backend in BACKENDS.items() if field_type in backend.accepts)
+
+
+def prepare(field: Field, backend: str, options: Options) -> Extract:
+    """Prepare `field` for extraction by the backend of that name.
+
+    Raises OptionError for an unknown name, a field it does not take, or an option it does not understand.
+    """
+    row = BACKENDS.get(backend)
+    if row is None:
+        raise OptionError(f"{backend}: no such backend; choose one of {', '.join(BACKENDS)}")
+    if not isinstance(field, row.accepts):
+        kind = "volumes" if isinstance(field, Volume) else "meshes"
+        able = [name for name, other in BACKENDS.items() if isinstance(field, other.accepts)]
+        raise OptionError(f"{backend}: does not take {kind}; choose one of {', '.join(able)}")
+    check_options(backend, options)
+    return row.prepare(field, options)
+
+
+def check_options(backend: str, options: Options) -> None:
+    """Refuse an option that the backend does not understand, rather than ignore it."""
+    common = {"threads", "cap", "normals"}
+    for option in fields(Options):
+        given = getattr(options, option.name) is not None
+        if option.name not in common and given and option.name not in BACKENDS[backend].options:
+            raise OptionError(f"--{option.name.replace('_', '-')}: is not an option of {backend}; leave it out")

@@ -1,0 +1,73 @@
+// crossing.hpp - Who is inside, where an edge is crossed, and how an ambiguous face is decided: the three
+// rules every algorithm shares. There is no other epsilon in the kernels than the clamp below.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace isocore {
+
+// A vertex keeps this share of its edge away from both ends, so that a sample equal to the isovalue gives no
+// triangle without area, and welding by position is safe.
+inline constexpr double kClamp = 1.0 / 1024;
+
+// Inside is lowest <= sample <= highest: the isovalue rounded to the sample type once, so that the test runs in
+// that type. Infinities and NaN are outside. `below` turns the rule over for a negative slope (module volume.py).
+template <class Sample>
+struct Inside {
+    Sample lowest, highest;
+    bool nothing = false;
+
+    Inside(double isovalue, bool below) {
+        constexpr Sample kMin = std::numeric_limits<Sample>::lowest(), kMax = std::numeric_limits<Sample>::max();
+        lowest = kMin;
+        highest = kMax;
+        if (below) {
+            if (isovalue < static_cast<double>(kMin)) nothing = true;
+            else if (isovalue < static_cast<double>(kMax)) highest = rounded(isovalue, false);
+        } else {
+            if (isovalue > static_cast<double>(kMax)) nothing = true;
+            else if (isovalue > static_cast<double>(kMin)) lowest = rounded(isovalue, true);
+        }
+    }
+
+    bool operator()(Sample sample) const { return !nothing && sample >= lowest && sample <= highest; }
+
+  private:
+    // The nearest sample value at or above (up) or at or below the isovalue.
+    static Sample rounded(double isovalue, bool up) {
+        if constexpr (std::is_integral_v<Sample>) {
+            return static_cast<Sample>(up ? std::ceil(isovalue) : std::floor(isovalue));
+        } else {
+            Sample nearest = static_cast<Sample>(isovalue);
+            if (up && static_cast<double>(nearest) < isovalue) nearest = std::nextafter(nearest, std::numeric_limits<Sample>::infinity());
+            if (!up && static_cast<double>(nearest) > isovalue) nearest = std::nextafter(nearest, -std::numeric_limits<Sample>::infinity());
+            return nearest;
+        }
+    }
+};
+
+// Where the isosurface crosses an edge, as a share of the way from sample a to sample b; a comes before b in
+// index order, so that all cells around the edge agree to the last bit.
+template <class Sample>
+double crossing(Sample a, Sample b, double isovalue) {
+    if constexpr (std::is_floating_point_v<Sample>) {
+        if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
+    }
+    const double fa = static_cast<double>(a), fb = static_cast<double>(b);
+    const double t = (isovalue - fa) / (fb - fa);
+    if (!(t > kClamp)) return kClamp;
+    return t < 1 - kClamp ? t : 1 - kClamp;
+}
+
+// The asymptotic decider (Nielson, Hamann 1991) on a face whose diagonal corners `in0`, `in1` are inside and
+// `out0`, `out1` outside: are the inside corners joined across the face? They are iff the bilinear saddle is not
+// below the isovalue, which for this sign pattern is a comparison of two products. Symmetric in its corners, so both
+// cells of a face agree. Corners with a non-finite value keep the inside corners apart.
+inline bool inside_corners_joined(double in0, double in1, double out0, double out1, double isovalue) {
+    if (!(std::isfinite(in0) && std::isfinite(in1) && std::isfinite(out0) && std::isfinite(out1))) return false;
+    return (in0 - isovalue) * (in1 - isovalue) >= (out0 - isovalue) * (out1 - isovalue);
+}
+
+}  // namespace isocore

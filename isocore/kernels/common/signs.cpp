@@ -1,0 +1,109 @@
+// signs.cpp - Classification at the speed of memory: compare 64 samples into 64 bytes, gather their top bits.
+#include "common/signs.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/crossing.hpp"
+#include "common/parallel.hpp"
+
+#if defined(__AVX2__)
+#include <immintrin.h>
+#elif defined(__SSE2__) || defined(_M_X64)
+#include <emmintrin.h>
+#endif
+
+namespace isocore {
+namespace {
+
+// Bit n of the result is the top bit of flags[n].
+std::uint64_t gather(const std::uint8_t* flags) {
+#if defined(__AVX2__)
+    const auto half = [&](int n) {
+        const auto loaded = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(flags + 32 * n));
+        return static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm256_movemask_epi8(loaded)));
+    };
+    return half(0) | half(1) << 32;
+#elif defined(__SSE2__) || defined(_M_X64)
+    const auto quarter = [&](int n) {
+        const auto loaded = _mm_loadu_si128(reinterpret_cast<const __m128i*>(flags + 16 * n));
+        return static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm_movemask_epi8(loaded)));
+    };
+    return quarter(0) | quarter(1) << 16 | quarter(2) << 32 | quarter(3) << 48;
+#else
+    std::uint64_t word = 0;
+    for (int n = 0; n < 64; ++n) word |= static_cast<std::uint64_t>(flags[n] >> 7) << n;
+    return word;
+#endif
+}
+
+// A separate function with restricted pointers: only so does every compiler vectorise the comparison.
+template <class Sample>
+void compare(const Sample* __restrict samples, std::uint8_t* __restrict flags, Sample lowest, Sample highest) {
+    for (int n = 0; n < 64; ++n) {
+        flags[n] = static_cast<std::uint8_t>(-static_cast<int>((samples[n] >= lowest) & (samples[n] <= highest)));
+    }
+}
+
+template <class Sample>
+void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>& inside, std::uint64_t* words) {
+    alignas(64) std::uint8_t flags[64];
+    std::size_t i = 0;
+    for (; i + 64 <= count; i += 64) {
+        compare(samples + i, flags, inside.lowest, inside.highest);
+        words[i / 64] = gather(flags);
+    }
+    if (i < count) {
+        Sample last[64] = {};
+        std::copy(samples + i, samples + count, last);
+        compare(last, flags, inside.lowest, inside.highest);
+        words[i / 64] = gather(flags) & ((std::uint64_t{1} << (count - i)) - 1);
+    }
+}
+
+// Make room for the layer of outside samples before the row.
+void shift_by_one(std::uint64_t* row, std::size_t words) {
+    for (std::size_t w = words; w-- > 1;) row[w] = row[w] << 1 | row[w - 1] >> 63;
+    row[0] <<= 1;
+}
+
+}  // namespace
+
+template <class Sample>
+SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads) {
+    const std::size_t pad = padded ? 1 : 0;
+    const Dims dims{samples.dims[0] + 2 * pad, samples.dims[1] + 2 * pad, samples.dims[2] + 2 * pad};
+    SignGrid grid{dims, pad, (dims[0] + 63) / 64, {}};
+    grid.bits.resize(grid.words * dims[1] * dims[2]);
+    const Inside<Sample> inside(isovalue, below);
+    const std::size_t plane = grid.words * dims[1];
+    if (inside.nothing) {
+        std::fill(grid.bits.begin(), grid.bits.end(), 0);
+        return grid;
+    }
+    parallel_for(threads, dims[2], [&](std::size_t k) {
+        std::uint64_t* rows = grid.bits.data() + plane * k;
+        if (pad) std::fill(rows, rows + plane, 0);
+        if (pad && (k == 0 || k + 1 == dims[2])) return;
+        for (std::size_t j = 0; j < samples.dims[1]; ++j) {
+            std::uint64_t* row = rows + grid.words * (j + pad);
+            classify_row(samples.row(j, k - pad), samples.dims[0], inside, row);
+            if (pad) shift_by_one(row, grid.words);
+        }
+    });
+    return grid;
+}
+
+#define ISOCORE_INSTANTIATE(Sample) \
+    template SignGrid classify<Sample>(GridView<Sample>, double, bool, bool, int);
+ISOCORE_INSTANTIATE(std::uint8_t)
+ISOCORE_INSTANTIATE(std::int8_t)
+ISOCORE_INSTANTIATE(std::uint16_t)
+ISOCORE_INSTANTIATE(std::int16_t)
+ISOCORE_INSTANTIATE(std::uint32_t)
+ISOCORE_INSTANTIATE(std::int32_t)
+ISOCORE_INSTANTIATE(float)
+ISOCORE_INSTANTIATE(double)
+#undef ISOCORE_INSTANTIATE
+
+}  // namespace isocore

@@ -1,0 +1,40 @@
+// signs.hpp - The sign of every sample as one bit: what the marching and climbing kernels really run on.
+// Sample (i, j, k) is bit i % 64 of word i / 64 of row (j, k); bits past the end of a row are 0. A padded grid
+// has one more layer of outside samples on every side, which closes the surface at the border: its sample
+// (i, j, k) is the volume's (i - 1, j - 1, k - 1).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "common/array.hpp"
+#include "common/grid.hpp"
+
+namespace isocore {
+
+struct SignGrid {
+    Dims dims;          // samples per axis, padding included
+    std::size_t pad;    // 0 or 1
+    std::size_t words;  // per row
+    Array<std::uint64_t> bits;
+
+    const std::uint64_t* row(std::size_t j, std::size_t k) const { return bits.data() + words * (j + dims[1] * k); }
+    bool at(std::size_t i, std::size_t j, std::size_t k) const { return row(j, k)[i / 64] >> (i % 64) & 1; }
+    // Which bits of word w belong to samples (or, with cells = 1, to cells) of a row.
+    std::uint64_t valid(std::size_t w, std::size_t cells = 0) const {
+        const std::size_t count = dims[0] - cells;
+        if (count >= 64 * (w + 1)) return ~std::uint64_t{0};
+        return count > 64 * w ? (std::uint64_t{1} << (count - 64 * w)) - 1 : 0;
+    }
+};
+
+// Instantiated in signs.cpp for the eight sample types. `below`: inside is sample <= isovalue.
+template <class Sample>
+SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads);
+
+// The row moved by one sample towards 0, so that bit i tells of sample i + 1.
+inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w, std::size_t words) {
+    return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
+}
+
+}  // namespace isocore

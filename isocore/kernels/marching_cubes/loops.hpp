@@ -1,0 +1,176 @@
+// loops.hpp - The case table of marching cubes, derived at compile time and proved in tests/kernels.
+//
+// A case is the eight corner signs and, for each face with alternating corners, whether its inside corners are
+// joined. Every face pairs its crossings by that alone, so the segments close to loops, and the cell across the face
+// draws the same segments the other way round. 656 cases, 1,026 loops of 3 to 12 edges.
+//
+// A loop is cut into triangles by diagonals. A diagonal between two edges of one face lies in that face, and if the
+// cell across drew the same one, four triangles would share it. So such diagonals are avoided where they can be; where
+// not, they are shared out: between the two crossings on parallel edges along the face's lower axis only to the cell
+// above the face, all others only to the cell below. Then every loop can be cut without a vertex in its middle.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "common/cube.hpp"
+
+namespace isocore::marching_cubes {
+
+inline constexpr int kMaxTriangles = 10;
+inline constexpr int kCases = 656;
+
+struct Case {
+    std::uint8_t triangles = 0;
+    std::uint8_t loops = 0;
+    std::array<std::uint8_t, 3 * kMaxTriangles> edges{};  // three per triangle
+};
+
+struct Corners {
+    std::uint16_t first = 0;      // its cases follow each other, by the decisions of its ambiguous faces
+    std::uint8_t ambiguous = 0;   // one bit per face with alternating corners
+};
+
+struct CaseTable {
+    std::array<Corners, 256> corners{};
+    std::array<Case, kCases> cases{};
+};
+
+namespace derivation {
+
+struct Loops {
+    std::array<std::array<int, 12>, 4> edges{};
+    std::array<int, 4> lengths{};
+    int count = 0;
+};
+
+// For each crossed edge the edge its segment leads to. Seen from outside the cell a segment runs from where the face's
+// rim enters the inside to where it left it: the last time if the inside corners are joined, else the next time.
+constexpr std::array<int, 12> segments(unsigned corners, unsigned joined) {
+    std::array<int, 12> next{};
+    next.fill(-1);
+    for (int face = 0; face < 6; ++face) {
+        const auto ring = cube::face_ring(face);
+        const auto in = [&](int n) { return (corners >> ring[static_cast<unsigned>(n & 3)] & 1) != 0; };
+        const auto edge = [&](int n) { return cube::edge_between(ring[static_cast<unsigned>(n & 3)], ring[static_cast<unsigned>((n + 1) & 3)]); };
+        const bool isolated = cube::alternates(corners, face) && !(joined >> face & 1);
+        for (int n = 0; n < 4; ++n) {
+            if (!in(n) || in(n + 1)) continue;
+            int entry = isolated ? n + 3 : n + 1;
+            while (in(entry) || !in(entry + 1)) ++entry;
+            next[static_cast<unsigned>(edge(entry))] = edge(n);
+        }
+    }
+    return next;
+}
+
+constexpr Loops trace(unsigned corners, unsigned joined) {
+    const auto next = segments(corners, joined);
+    Loops loops;
+    unsigned seen = 0;
+    for (int start = 0; start < 12; ++start) {
+        if (next[static_cast<unsigned>(start)] < 0 || (seen >> start & 1)) continue;
+        const auto loop = static_cast<unsigned>(loops.count++);
+        for (int edge = start; !(seen >> edge & 1); edge = next[static_cast<unsigned>(edge)]) {
+            seen |= 1u << edge;
+            loops.edges[loop][static_cast<unsigned>(loops.lengths[loop]++)] = edge;
+        }
+    }
+    return loops;
+}
+
+inline constexpr int kInFace = 1'000, kForbidden = 1'000'000;
+
+// What a diagonal between two crossed edges costs: its squared length, measured in half cells.
+constexpr int diagonal_cost(int a, int b) {
+    int cost = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto place = [&](int edge) { return edge / 4 == axis ? 1 : 2 * (cube::low_corner(edge) >> axis & 1); };
+        cost += (place(a) - place(b)) * (place(a) - place(b));
+    }
+    const int face = cube::shared_face(a, b);
+    if (face < 0) return cost;
+    const bool for_cell_above = a / 4 == b / 4 && a / 4 == cube::other_axes(face / 2)[0];
+    const bool cell_is_above = (face & 1) == 0;
+    return cost + (for_cell_above == cell_is_above ? kInFace : kForbidden);
+}
+
+// The cheapest triangulation of one loop, by dynamic programming over its sub-polygons.
+constexpr void triangulate(const std::array<int, 12>& loop, int length, Case& out) {
+    std::array<std::array<int, 12>, 12> cost{}, apex{};
+    const auto chord = [&](int i, int j) {
+        const bool is_side = j - i == 1 || (i == 0 && j == length - 1);
+        return is_side ? 0 : diagonal_cost(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>(j)]);
+    };
+    for (int span = 2; span < length; ++span) {
+        for (int i = 0; i + span < length; ++i) {
+            const int j = i + span;
+            int best = -1;
+            for (int k = i + 1; k < j; ++k) {
+                const int price = cost[static_cast<unsigned>(i)][static_cast<unsigned>(k)] + chord(i, k) +
+                                  cost[static_cast<unsigned>(k)][static_cast<unsigned>(j)] + chord(k, j);
+                if (best < 0 || price < best) {
+                    best = price;
+                    apex[static_cast<unsigned>(i)][static_cast<unsigned>(j)] = k;
+                }
+            }
+            cost[static_cast<unsigned>(i)][static_cast<unsigned>(j)] = best;
+        }
+    }
+    if (cost[0][static_cast<unsigned>(length - 1)] >= kForbidden) throw "a loop has no legal triangulation";
+    std::array<std::array<int, 2>, 24> open{};
+    int waiting = 0;
+    open[static_cast<unsigned>(waiting++)] = {0, length - 1};
+    while (waiting > 0) {
+        const auto [i, j] = open[static_cast<unsigned>(--waiting)];
+        if (j - i < 2) continue;
+        const int k = apex[static_cast<unsigned>(i)][static_cast<unsigned>(j)];
+        const auto place = static_cast<unsigned>(3 * out.triangles++);
+        out.edges[place] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(i)]);
+        out.edges[place + 1] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(k)]);
+        out.edges[place + 2] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(j)]);
+        open[static_cast<unsigned>(waiting++)] = {i, k};
+        open[static_cast<unsigned>(waiting++)] = {k, j};
+    }
+}
+
+constexpr Case derive_case(unsigned corners, unsigned joined) {
+    const Loops loops = trace(corners, joined);
+    Case out;
+    out.loops = static_cast<std::uint8_t>(loops.count);
+    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) triangulate(loops.edges[n], loops.lengths[n], out);
+    return out;
+}
+
+// Spread the low bits of `packed` over the set bits of `mask`.
+constexpr unsigned spread(unsigned packed, unsigned mask) {
+    unsigned out = 0;
+    for (; mask != 0; mask &= mask - 1, packed >>= 1) {
+        if (packed & 1) out |= mask & (0u - mask);
+    }
+    return out;
+}
+
+constexpr CaseTable derive() {
+    CaseTable table;
+    unsigned filled = 0;
+    for (unsigned corners = 0; corners < 256; ++corners) {
+        unsigned ambiguous = 0;
+        for (int face = 0; face < 6; ++face) {
+            if (cube::alternates(corners, face)) ambiguous |= 1u << face;
+        }
+        table.corners[corners] = {static_cast<std::uint16_t>(filled), static_cast<std::uint8_t>(ambiguous)};
+        for (unsigned packed = 0; packed < 1u << std::popcount(ambiguous); ++packed) {
+            table.cases[filled++] = derive_case(corners, spread(packed, ambiguous));
+        }
+    }
+    if (filled != kCases) throw "the case table has another size than expected";
+    return table;
+}
+
+}  // namespace derivation
+
+inline constexpr CaseTable kTable = derivation::derive();
+
+}  // namespace isocore::marching_cubes
