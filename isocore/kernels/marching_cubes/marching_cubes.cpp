@@ -11,10 +11,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/cell_loops.hpp"
+#include "common/decider.hpp"
 #include "common/edge_vertices.hpp"
 #include "common/parallel.hpp"
 #include "common/signs.hpp"
-#include "marching_cubes/loops.hpp"
 
 namespace isocore::marching_cubes {
 namespace {
@@ -124,7 +125,7 @@ class Drawer {
                 const int x = std::countr_zero(left);
                 unsigned corners = 0;
                 for (unsigned n = 0; n < 4; ++n) corners |= static_cast<unsigned>((here[n] >> x & 1) | (next[n] >> x & 1) << 1) << 2 * n;
-                const Case& drawn = decided(corners, 64 * w + static_cast<std::size_t>(x), j, k);
+                const cell_loops::Case& drawn = decided(corners, 64 * w + static_cast<std::size_t>(x), j, k);
                 const auto numbers = edge_numbers(base, crossed, x);
                 for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
             }
@@ -147,27 +148,12 @@ class Drawer {
         return numbers;
     }
 
-    const Case& decided(unsigned corners, std::size_t i, std::size_t j, std::size_t k) {
-        const Corners& entry = kTable.corners[corners];
-        if (entry.ambiguous == 0) return kTable.cases[entry.first];
+    const cell_loops::Case& decided(unsigned corners, std::size_t i, std::size_t j, std::size_t k) {
+        const cell_loops::Corners& entry = cell_loops::kTable.corners[corners];
+        if (entry.ambiguous == 0) return cell_loops::kTable.cases[entry.first];
         ++ambiguous_cells;
-        unsigned packed = 0, bit = 0;
-        for (unsigned left = entry.ambiguous; left != 0; left &= left - 1, ++bit) {
-            packed |= static_cast<unsigned>(joined(std::countr_zero(left), corners, i, j, k)) << bit;
-        }
-        ambiguous_faces += bit;
-        return kTable.cases[entry.first + packed];
-    }
-
-    bool joined(int face, unsigned corners, std::size_t i, std::size_t j, std::size_t k) const {
-        const auto ring = cube::face_ring(face);
-        const auto value = [&](std::size_t n) {
-            const auto c = static_cast<std::size_t>(ring[n]);
-            const std::size_t pad = signs_.pad;
-            return static_cast<double>(samples_.at(i + (c & 1) - pad, j + (c >> 1 & 1) - pad, k + (c >> 2) - pad));
-        };
-        const std::size_t in = corners >> ring[0] & 1 ? 0 : 1;
-        return inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue_);
+        ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
+        return cell_loops::kTable.cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
     }
 
     const GridView<Sample>& samples_;

@@ -1,4 +1,4 @@
-// loops.hpp - The case table of marching cubes, derived at compile time and proved in tests/kernels.
+// cell_loops.hpp - How the surface crosses one cell: a table of cases, derived at compile time and proved in tests/kernels.
 //
 // A case is the eight corner signs and, for each face with alternating corners, whether its inside corners are
 // joined. Every face pairs its crossings by that alone, so the segments close to loops, and the cell across the face
@@ -16,7 +16,7 @@
 
 #include "common/cube.hpp"
 
-namespace isocore::marching_cubes {
+namespace isocore::cell_loops {
 
 inline constexpr int kMaxTriangles = 10;
 inline constexpr int kCases = 656;
@@ -173,4 +173,4 @@ constexpr CaseTable derive() {
 
 inline constexpr CaseTable kTable = derivation::derive();
 
-}  // namespace isocore::marching_cubes
+}  // namespace isocore::cell_loops
