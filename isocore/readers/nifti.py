@@ -1,0 +1,99 @@
+"""Read NIfTI-1, NIfTI-2 and Analyze 7.5: .nii, .hdr with .img, each also packed with gzip.
+
+Samples keep their stored type; slope and intercept travel beside them. World is RAS in mm (`isocore.volume`).
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isocore.errors import InputError
+from isocore.readers.layout import Layout, chosen, load, spatial
+from isocore.readers.nifti_header import DATATYPES, UNCONTOURABLE, Order, parsed, placement, scaling, sizes_of
+from isocore.readers.options import ReadOptions
+from isocore.readers.packed import Packed, packing_of
+from isocore.readers.sample_types import contourable, from_float128, refuse
+from isocore.volume import Volume
+
+
+def read_nifti(path: Path, options: ReadOptions) -> Volume:
+    """The volume of a NIfTI or Analyze file; `path` is its .nii, its .hdr or its .img."""
+    header, order, samples_path, start = _opened(path)
+    layout = _layout(header, order)
+    volume = chosen(layout, options.volume)
+    with Packed(samples_path, packing=packing_of(samples_path)) as source:
+        source.promise(start + layout.total_bytes, kept_bytes=layout.volume_bytes)
+        source.skip(start)
+        samples: Any = load(source, layout, volume)
+        source.finish()
+    samples, lost = from_float128(samples, order) if samples.dtype.kind == "V" else contourable(samples)
+    slope, intercept = scaling(header)
+    place = placement(header)
+    return Volume(
+        samples,
+        slope=slope,
+        intercept=intercept,
+        affine=place.affine,
+        space=place.space,
+        unit=place.unit,
+        warnings=lost + place.warnings,
+    )
+
+
+def count_nifti(path: Path, options: ReadOptions) -> int:
+    """How many volumes the file holds."""
+    header, order, _, _ = _opened(path)
+    return _layout(header, order).volumes
+
+
+def _opened(path: Path) -> tuple[Any, Order, Path, int]:
+    """The header, its byte order, the file with the samples and where they start there."""
+    header_path, image_path = _pair(path)
+    with Packed(header_path, packing=packing_of(header_path)) as source:
+        header, order = parsed(source.read(540))
+    magic = header["magic"].tobytes()[:3]
+    start = float(header["vox_offset"])
+    if magic in (b"n+1", b"n+2"):
+        smallest = header.itemsize + 4
+        if start and not (start >= smallest and math.isfinite(start)):
+            raise InputError(f"header puts the samples at byte {start:g}, inside itself; it is damaged")
+        return header, order, header_path, int(start) or smallest
+    if image_path is None:
+        raise InputError("is no NIfTI file (its header has no magic n+1 or n+2); check its suffix")
+    if not (math.isfinite(start) and start >= 0):
+        raise InputError(f"header puts the samples at byte {start:g}; it is damaged")
+    if not image_path.is_file():
+        raise InputError(f"its samples are missing: no {image_path.name} beside it; put it there")
+    return header, order, image_path, int(start)
+
+
+def _layout(header: Any, order: Order) -> Layout:
+    code = int(header["datatype"])
+    if code in UNCONTOURABLE:
+        raise refuse(UNCONTOURABLE[code], "convert them to numbers first")
+    if code not in DATATYPES:
+        raise InputError(f"header names sample type {code}, which NIfTI does not know; it is damaged")
+    sizes = sizes_of(header)
+    shape = spatial((*sizes, 1, 1)[:3])
+    return Layout(shape, np.dtype(DATATYPES[code]).newbyteorder(order), volumes=math.prod(sizes[3:]))
+
+
+def _pair(path: Path) -> tuple[Path, Path | None]:
+    """Header and image file: the same one for .nii (image None), two for .hdr and .img."""
+    suffix = ".gz" if path.name.lower().endswith(".gz") else ""
+    bare = path.name[: -len(suffix)] if suffix else path.name
+    stem, kind = bare[:-4], bare[-4:]
+    if kind.lower() == ".nii":
+        return path, None
+    partner = {".hdr": ".img", ".img": ".hdr", ".HDR": ".IMG", ".IMG": ".HDR"}.get(kind, ".img")
+    beside = [path.with_name(stem + partner + end) for end in (suffix, ".gz", "")]
+    found = next((file for file in beside if file.is_file()), beside[0])
+    if kind.lower() == ".hdr":
+        return path, found
+    if not found.is_file():
+        raise InputError(f"its header is missing: no {found.name} beside it; put it there")
+    return found, path

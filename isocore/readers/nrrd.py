@@ -1,0 +1,128 @@
+"""Read NRRD: .nrrd with its samples behind the header, .nhdr with its samples in files beside it.
+
+Encodings raw, gzip, bzip2, text and hex. World is what the header says: RAS, LAS, LPS, or its own ("native").
+"""
+
+from __future__ import annotations
+
+import binascii
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from isocore.errors import InputError
+from isocore.readers import nrrd_header
+from isocore.readers.joined import Decoded, Joined
+from isocore.readers.layout import Layout, chosen, load
+from isocore.readers.nrrd_axes import TEXT_ENCODINGS, axes_of, placement
+from isocore.readers.nrrd_header import Head
+from isocore.readers.options import ReadOptions
+from isocore.readers.packed import Packed, Packing, Source
+from isocore.readers.sample_types import contourable
+from isocore.volume import Volume
+
+_PACKINGS: dict[str, Packing] = {
+    "raw": "none",
+    "gzip": "gzip",
+    "gz": "gzip",
+    "bzip2": "bzip2",
+    "bz2": "bzip2",
+}
+
+
+def read_nrrd(path: Path, options: ReadOptions) -> Volume:
+    """The volume of a NRRD file; `path` is its .nrrd or its .nhdr."""
+    head = nrrd_header.parsed(path)
+    axes = axes_of(head)
+    place = placement(head, axes)
+    volume = chosen(axes.layout, options.volume)
+    with ExitStack() as opened:
+        files = _files(path, head, axes.layout)
+        parts = [_opened(opened, file, start, head, axes.layout, parts=len(files)) for file, start in files]
+        source = Joined(parts, axes.layout.total_bytes // len(parts)) if len(parts) > 1 else parts[0]
+        samples: Any = load(source, axes.layout, volume)
+        surplus = source.rest() if axes.layout.ends_with(volume) else 0
+    samples, warnings = contourable(samples)
+    if surplus:
+        warnings += (f"has {surplus:,} bytes more than its header describes; check its byte skip",)
+    return Volume(samples, affine=place.affine, space=place.space, unit=place.unit, warnings=warnings)
+
+
+def count_nrrd(path: Path, options: ReadOptions) -> int:
+    """How many volumes the file holds."""
+    return axes_of(nrrd_header.parsed(path)).layout.volumes
+
+
+def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
+    """The files that hold the samples, in order, and the byte of each at which they may start."""
+    named = head.fields.get("datafile")
+    if named is None:
+        return [(path, head.size)]
+    words = named.split()
+    if named.startswith("LIST"):
+        names = list(head.files)
+    elif len(words) in (4, 5) and "%" in words[0]:
+        first, last, step = (int(word) for word in words[1:4])
+        if not step or (last - first) // step >= layout.total_bytes:
+            raise InputError(f"header field data file numbers no files: {named[:60]}")
+        names = [words[0] % number for number in range(first, last + (1 if step > 0 else -1), step)]
+    else:
+        names = [named]
+    files = [path.parent / name for name in names]
+    missing = [name for name, file in zip(names, files, strict=True) if not file.is_file()]
+    if missing or not files:
+        raise InputError(
+            f"its samples are missing: no {(missing or ['data file'])[0]} beside it; put it there"
+        )
+    if layout.total_bytes % len(files):
+        raise InputError(
+            f"header spreads {layout.total_bytes:,} bytes unevenly over {len(files)} files; mend it"
+        )
+    return [(file, 0) for file in files]
+
+
+def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layout, *, parts: int) -> Source:
+    """One data file, ready to hand out its share of the samples' bytes."""
+    share_bytes = layout.total_bytes // parts
+    lines, skipped = _skips(head)
+    start = _after_lines(file, start, lines)
+    encoding = head.need("encoding").lower()
+    if encoding in (*TEXT_ENCODINGS, "hex"):
+        return Decoded(_from_text(file, start + skipped, encoding, layout), share_bytes)
+    if encoding not in _PACKINGS:
+        raise InputError(f"header names the encoding {encoding}, which cannot be read; use raw or gzip")
+    source = opened.enter_context(Packed(file, packing=_PACKINGS[encoding], start=start))
+    if skipped < 0:
+        skipped = source.content_bytes() - share_bytes
+    source.promise(max(skipped, 0) + share_bytes, kept_bytes=layout.volume_bytes)
+    source.skip(skipped)
+    return source
+
+
+def _skips(head: Head) -> tuple[int, int]:
+    """Lines to skip before unpacking, and bytes to skip after it; -1: the samples are the last bytes."""
+    lines, skipped = (int(head.fields.get(name) or "0") for name in ("lineskip", "byteskip"))
+    if lines < 0 or skipped < -1:
+        raise InputError(f"header skips {lines} lines and {skipped} bytes, which is not possible; mend it")
+    return lines, skipped
+
+
+def _after_lines(file: Path, start: int, lines: int) -> int:
+    with file.open("rb") as text:
+        text.seek(start)
+        for _ in range(lines):
+            if not text.readline():
+                raise InputError(f"header skips {lines} lines of {file.name}, which has fewer; mend it")
+        return text.tell()
+
+
+def _from_text(file: Path, start: int, encoding: str, layout: Layout) -> bytes:
+    """The samples' bytes of a text or hex encoding."""
+    with file.open("rb") as text:
+        text.seek(max(start, 0))
+        written = text.read().split()
+    if encoding == "hex":
+        return binascii.unhexlify(b"".join(written))
+    return np.array(written, dtype=np.bytes_).astype(layout.dtype).tobytes()

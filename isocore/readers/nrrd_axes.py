@@ -1,0 +1,184 @@
+"""What a NRRD header says about its axes: how samples lie in the file, and where they lie in the world.
+
+Follows "Definition of NRRD File Format" (Kindlmann, Teem project): per-axis fields, space and orientation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import FieldError, InputError
+from isocore.readers.layout import Layout, spatial
+from isocore.readers.nrrd_header import Head
+from isocore.readers.sample_types import refuse
+from isocore.volume import Space
+
+_TYPES = {
+    "i1": "signed char|int8|int8_t",
+    "u1": "uchar|unsigned char|uint8|uint8_t",
+    "i2": "short|short int|signed short|signed short int|int16|int16_t",
+    "u2": "ushort|unsigned short|unsigned short int|uint16|uint16_t",
+    "i4": "int|signed int|int32|int32_t",
+    "u4": "uint|unsigned int|uint32|uint32_t",
+    "i8": "longlong|long long|long long int|signed long long|signed long long int|int64|int64_t",
+    "u8": "ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t",
+    "f4": "float",
+    "f8": "double",
+}
+TYPE_CODES = {name: code for code, names in _TYPES.items() for name in names.split("|")}
+
+_SPACES: dict[str, Space] = {
+    "right-anterior-superior": "ras", "ras": "ras", "right-anterior-superior-time": "ras", "rast": "ras",
+    "left-anterior-superior": "las", "las": "las", "left-anterior-superior-time": "las", "last": "las",
+    "left-posterior-superior": "lps", "lps": "lps", "left-posterior-superior-time": "lps", "lpst": "lps",
+}  # fmt: skip
+
+_MM_PER_UNIT = {
+    **dict.fromkeys(("mm", "millimeter", "millimeters", "millimetre", "millimetres"), 1.0),
+    **dict.fromkeys(("cm", "centimeter", "centimeters"), 10.0),
+    **dict.fromkeys(("m", "meter", "meters", "metre", "metres"), 1000.0),
+    **dict.fromkeys(("um", "µm", "μm", "micron", "microns", "micrometer", "micrometers"), 0.001),
+    **dict.fromkeys(("nm", "nanometer", "nanometers"), 1e-6),
+}
+
+
+#: Encodings whose samples are written as text, without a byte order.
+TEXT_ENCODINGS = ("ascii", "text", "txt")
+
+#: Kinds of axis along which samples lie in space; every other kind tells volumes apart.
+_SPATIAL_KINDS = ("domain", "space", "???", "none")
+_COLOURS = {
+    "rgb-color": "RGB colours",
+    "rgba-color": "RGBA colours",
+    "hsv-color": "HSV colours",
+    "xyz-color": "XYZ colours",
+}
+_UNCONTOURABLE = {**_COLOURS, "complex": "complex numbers", "quaternion": "quaternions"}
+
+
+@dataclass(frozen=True, slots=True)
+class Axes:
+    """layout: of the samples. spatial: the three axes of the file that lie in space."""
+
+    layout: Layout
+    spatial: tuple[int, ...]
+
+
+def axes_of(head: Head) -> Axes:
+    """Which axes lie in space, which one tells volumes apart, and what is stored."""
+    sizes = head.integers("sizes")
+    if len(sizes) != head.integers("dimension")[0] or min(sizes) < 0:
+        raise InputError(
+            f"header gives {head.need('dimension')} axes the sizes {head.need('sizes')}; it is damaged"
+        )
+    kinds = [kind.lower() for kind in head.words("kinds")] or ["???"] * len(sizes)
+    directions = head.vectors("spacedirections") or [None] * len(sizes)
+    if len(kinds) != len(sizes) or len(directions) != len(sizes):
+        raise InputError(f"header describes more or fewer than its {len(sizes)} axes; it is damaged")
+    for kind in kinds:
+        if kind in _UNCONTOURABLE:
+            raise refuse(_UNCONTOURABLE[kind], "convert them to numbers first")
+    directed = any(direction is not None for direction in directions)
+    in_space = [
+        axis
+        for axis, kind in enumerate(kinds)
+        if kind in _SPATIAL_KINDS and not (directed and directions[axis] is None)
+    ]
+    while len(in_space) > 3 and sizes[in_space[-1]] == 1:
+        in_space.pop()
+    shape = spatial(tuple(sizes[axis] for axis in in_space[:3]))
+    others = [axis for axis in range(len(sizes)) if axis not in in_space[:3] and sizes[axis] != 1]
+    if len(others) > 1:
+        raise FieldError(
+            f"has {len(others)} axes beyond space ({head.need('sizes')}); one can be chosen from, not more"
+        )
+    before = sum(axis < others[0] for axis in in_space[:3]) if others else 3
+    volumes = sizes[others[0]] if others else 1
+    return Axes(Layout(shape, _sample_type(head), volumes=volumes, axis=before), tuple(in_space[:3]))
+
+
+def _sample_type(head: Head) -> np.dtype[Any]:
+    name = head.need("type").lower()
+    if name == "block":
+        raise refuse("blocks of bytes", "write them as numbers first")
+    if name not in TYPE_CODES:
+        raise InputError(f"header names sample type {name}, which NRRD does not know; it is damaged")
+    stored = np.dtype(TYPE_CODES[name])
+    endian = head.fields.get("endian", "").lower()
+    if endian in ("little", "big"):
+        return stored.newbyteorder("<" if endian == "little" else ">")
+    if stored.itemsize > 1 and head.need("encoding").lower() not in TEXT_ENCODINGS:
+        raise InputError(
+            f"header gives no byte order for its {name} samples; add endian: little or endian: big"
+        )
+    return stored
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """affine: (4, 4) float64, index to world, in `unit`: "mm", or "" where the file does not say."""
+
+    affine: npt.NDArray[np.float64]
+    space: Space
+    unit: str
+
+
+def placement(head: Head, axes: Axes) -> Placement:
+    """Where the samples lie: by space directions, else spacings, else the axes' ends."""
+    affine = np.eye(4)
+    directions = head.vectors("spacedirections")
+    stated = [directions[axis] for axis in axes.spatial] if directions else []
+    if stated and None not in stated:
+        for column, direction in enumerate(stated):
+            affine[:3, column] = _three(direction, "space directions")
+    else:
+        steps, firsts = _steps(head, axes)
+        affine[:3, :3], affine[:3, 3] = np.diag(steps), firsts
+    origin = head.vectors("spaceorigin")
+    if origin and origin[0] is not None:
+        affine[:3, 3] = _three(origin[0], "space origin")
+    space = _SPACES.get(head.fields.get("space", "").lower(), "native")
+    units = head.words("spaceunits")[:3]
+    if not units and len(head.words("units")) > max(axes.spatial):
+        units = [head.words("units")[axis] for axis in axes.spatial]
+    factors = [_MM_PER_UNIT.get(unit.lower()) for unit in units]
+    known = [factor for factor in factors if factor is not None]
+    if len(known) != 3:
+        return Placement(affine, space, "")
+    affine[:3] *= np.array(known)[:, None]
+    return Placement(affine, space, "mm")
+
+
+def _three(vector: list[float] | None, field: str) -> list[float]:
+    if vector is None or len(vector) < 3 or not all(map(math.isfinite, vector[:3])):
+        raise InputError(f"header field {field} has no three numbers per vector; it is damaged")
+    return vector[:3]
+
+
+def _steps(head: Head, axes: Axes) -> tuple[list[float], list[float]]:
+    """Spacing of each spatial axis and position of its first sample, 1 and 0 where nothing says more."""
+    spacings, lows, highs = head.numbers("spacings"), head.numbers("axismins"), head.numbers("axismaxs")
+    centerings = head.words("centerings")
+    steps, firsts = [], []
+    for axis, samples in zip(axes.spatial, axes.layout.shape, strict=True):
+        cell = _at(centerings, axis) == "cell"
+        low, high, step = _number(lows, axis), _number(highs, axis), _number(spacings, axis)
+        if step is None and low is not None and high is not None:
+            step = (high - low) / (samples if cell else samples - 1)
+        steps.append(1.0 if step is None else step)
+        firsts.append(0.0 if low is None else low + (steps[-1] / 2 if cell else 0.0))
+    return steps, firsts
+
+
+def _number(numbers: list[float] | None, axis: int) -> float | None:
+    number = _at(numbers or [], axis)
+    return number if number is not None and math.isfinite(number) else None
+
+
+def _at(entries: list[Any], axis: int) -> Any:
+    return entries[axis] if axis < len(entries) else None

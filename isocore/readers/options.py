@@ -1,0 +1,25 @@
+"""What a reader may be told about a file that the file does not tell itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReadOptions:
+    """Each reader takes what concerns its format and leaves the rest.
+
+    volume: which volume of a 4-D file, counted from 0; None where the file holds one.
+    field, component: VTU, which point field and which part of it ("0", "1", ... or "magnitude").
+    shape, dtype, spacing, origin, byte_order, offset: raw files; they go before those of a sidecar.
+    """
+
+    volume: int | None = None
+    field: str | None = None
+    component: str | None = None
+    shape: tuple[int, ...] | None = None
+    dtype: str | None = None
+    spacing: tuple[float, ...] | None = None
+    origin: tuple[float, ...] | None = None
+    byte_order: str | None = None
+    offset: int | None = None

@@ -1,0 +1,169 @@
+"""The bytes of a file, plain, gzip or bzip2, read once and straight to where they belong.
+
+gzip is inflated by isal where there is a wheel of it (about 2.5 times zlib), else by zlib; both know files of
+several members and check every checksum they pass. Messages carry no path: `isocore.readers.read` adds it.
+"""
+
+from __future__ import annotations
+
+import bz2
+import os
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any, Literal, Protocol, Self
+
+from isocore.errors import InputError
+
+Packing = Literal["none", "gzip", "bzip2"]
+
+#: One call of the inflater: small enough to stay in the second-level cache.
+_CHUNK = 1 << 18
+#: No deflate stream inflates to more than this many times its size.
+_DEFLATE_LIMIT = 1032
+
+
+def packing_of(path: Path) -> Packing:
+    """How `path` is packed, by its first bytes: suffixes lie."""
+    with path.open("rb") as file:
+        magic = file.read(3)
+    if magic[:2] == b"\x1f\x8b":
+        return "gzip"
+    return "bzip2" if magic == b"BZh" else "none"
+
+
+class Source(Protocol):
+    """Bytes that are read once, forwards."""
+
+    def skip(self, count: int) -> None: ...
+
+    def fill(self, target: memoryview) -> None: ...
+
+    def rest(self) -> int: ...
+
+
+class Packed:
+    """The content of `path` from byte `start` on, unpacked while it is read, forwards only."""
+
+    def __init__(self, path: Path, *, packing: Packing, start: int = 0) -> None:
+        self._path, self._packing, self._start = path, packing, start
+        self._promised = 0
+        self._file = path.open("rb", buffering=0)
+        self._file.seek(start)
+        self._content: Any = _unpacking(self._file, packing)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._content.close()
+        self._file.close()
+
+    def promise(self, content_bytes: int, *, kept_bytes: int) -> None:
+        """Refuse before anything is allocated: content that cannot be there, or that cannot be kept."""
+        self._promised = content_bytes
+        file_bytes = self._path.stat().st_size - self._start
+        if self._packing == "none" and file_bytes < content_bytes:
+            raise self._ends_early(file_bytes)
+        if self._packing == "gzip" and content_bytes > file_bytes * _DEFLATE_LIMIT:
+            raise InputError(
+                f"header promises {content_bytes:,} bytes, but {file_bytes:,} bytes of gzip hold at most "
+                f"{file_bytes * _DEFLATE_LIMIT:,}; copy it again"
+            )
+        memory_bytes = _memory_bytes()
+        if kept_bytes > memory_bytes:
+            raise InputError(f"needs {kept_bytes:,} bytes of memory of {memory_bytes:,}; crop the data")
+
+    def read(self, count: int) -> bytes:
+        """The next `count` bytes; fewer where the content ends."""
+        return bytes(self._content.read(count))
+
+    def skip(self, count: int) -> None:
+        """Leave out the next `count` bytes."""
+        if self._packing == "none":
+            self._file.seek(count, os.SEEK_CUR)
+            return
+        scratch = memoryview(bytearray(min(count, _CHUNK)))
+        while count > 0:
+            self.fill(scratch[: min(count, _CHUNK)])
+            count -= min(count, _CHUNK)
+
+    def fill(self, target: memoryview) -> None:
+        """Fill all of `target` (bytes) with what comes next."""
+        filled = 0
+        while filled < len(target):
+            try:
+                got = self._content.readinto(target[filled : filled + _CHUNK])
+            except EOFError:
+                got = 0
+            if not got:
+                raise self._ends_early(sum(map(len, self._whole())))
+            filled += got
+
+    def finish(self) -> None:
+        """Look one byte ahead: at the end of the content this checks the last checksum."""
+        if self._packing != "none":
+            self._content.read(1)
+
+    def rest(self) -> int:
+        """How many bytes are left; they are read."""
+        if self._packing == "none":
+            return self._path.stat().st_size - self._file.tell()
+        return sum(len(chunk) for chunk in iter(lambda: self._content.read(_CHUNK), b""))
+
+    def content_bytes(self) -> int:
+        """How many bytes the whole content has: a second pass where it is packed."""
+        return sum(map(len, self._whole()))
+
+    def _ends_early(self, held_bytes: int) -> InputError:
+        return InputError(f"ends early ({held_bytes:,} of {self._promised:,} bytes); copy it again")
+
+    def _whole(self) -> Iterator[bytes]:
+        """All of the content that can be had, from its first byte, however damaged its end."""
+        with self._path.open("rb") as file:
+            file.seek(self._start)
+            unpacker = _unpacker(self._packing)
+            for packed in iter(lambda: file.read(1 << 14), b""):
+                while packed:
+                    try:
+                        yield unpacker.decompress(packed)
+                    except (zlib.error, OSError):
+                        return
+                    packed = unpacker.unused_data
+                    if unpacker.eof:
+                        unpacker = _unpacker(self._packing)
+
+
+class _Plain:
+    """The unpacker of what is not packed."""
+
+    unused_data = b""
+    eof = False
+
+    def decompress(self, data: bytes) -> bytes:
+        return data
+
+
+def _unpacker(packing: Packing) -> Any:
+    if packing == "gzip":
+        return zlib.decompressobj(wbits=31)
+    return bz2.BZ2Decompressor() if packing == "bzip2" else _Plain()
+
+
+def _unpacking(file: IO[bytes], packing: Packing) -> Any:
+    """`file` as one to read the unpacked content from."""
+    if packing == "gzip":
+        try:
+            from isal import igzip as inflater
+        except ImportError:
+            import gzip as inflater  # type: ignore[no-redef]
+        return inflater.GzipFile(fileobj=file, mode="rb")  # type: ignore[no-untyped-call]
+    return bz2.BZ2File(file) if packing == "bzip2" else file
+
+
+def _memory_bytes() -> float:
+    """The machine's memory; without bound where it does not tell."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):
+        return float("inf")
