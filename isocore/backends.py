@@ -14,7 +14,7 @@ from typing import Any
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
-from isocore.surface import Surface
+from isocore.surface import Surface, place_fresh
 from isocore.volume import Volume
 
 Field = Volume | CellMesh
@@ -77,8 +77,8 @@ def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Optio
     normals = None
     if options.normals:
         normals = _kernels.gradient_normals(volume.samples, vertices, triangles, volume.inside_is_below, options.threads)
-    return Surface(vertices, triangles, normals).placed(
-        volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
+    return place_fresh(
+        vertices, triangles, normals, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
     )
 
 

@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from isocore import _kernels
 from isocore.volume import Space
+
+# float32 is enough while its steps are below this part of the shortest voxel edge: half of the distance
+# that vertices keep from grid points, so that no two fall together, whichever way the affine turns them.
+_COARSEST_STEP = 2.0**-11
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,12 +33,84 @@ class Surface:
     unit: str = ""
 
     def __post_init__(self) -> None:
-        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3 or self.vertices.dtype.name not in ("float32", "float64"):
+        real = self.vertices.dtype.name in ("float32", "float64")
+        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3 or not real:
             raise ValueError("vertices must be (v, 3) float32 or float64")
         if self.triangles.ndim != 2 or self.triangles.shape[1] != 3 or self.triangles.dtype != np.int32:
             raise ValueError("triangles must be (t, 3) int32")
-        if self.normals is not None and (self.normals.shape != self.vertices.shape or self.normals.dtype != np.float32):
+        normals = self.normals
+        if normals is not None and (normals.shape != self.vertices.shape or normals.dtype != np.float32):
             raise ValueError("normals must be (v, 3) float32")
-        for array in (self.vertices, self.triangles, self.normals):
+        for name in ("vertices", "triangles", "normals"):
+            array = getattr(self, name)
             if array is not None:
+                array = np.ascontiguousarray(array)
                 array.flags.writeable = False
+                object.__setattr__(self, name, array)
+
+    def placed(
+        self,
+        affine: npt.NDArray[np.float64],
+        *,
+        space: Space | None = None,
+        unit: str | None = None,
+        threads: int = 1,
+    ) -> Surface:
+        """This surface, moved by `affine` (4, 4), which takes its frame to that of `space`.
+
+        The only place where a mirrored affine swaps two corners of every triangle.
+        """
+        mirrored = np.linalg.det(affine[:3, :3]) < 0
+        return place_fresh(
+            self.vertices,
+            self.triangles.copy() if mirrored else self.triangles,
+            None if self.normals is None else self.normals.copy(),
+            affine,
+            space=self.space if space is None else space,
+            unit=self.unit if unit is None else unit,
+            threads=threads,
+        )
+
+
+def place_fresh(
+    vertices: npt.NDArray[Any],
+    triangles: npt.NDArray[np.int32],
+    normals: npt.NDArray[np.float32] | None,
+    affine: npt.NDArray[np.float64],
+    *,
+    space: Space,
+    unit: str,
+    threads: int = 1,
+) -> Surface:
+    """As `Surface.placed`, on arrays nobody else holds: they are changed where they lie if they can be.
+
+    vertices: (v, 3) float32 or float64; triangles: (t, 3) int32; normals: (v, 3) float32 or None, all in the
+    frame that `affine` (4, 4) starts from.
+    """
+    rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
+    dtype = _coordinate_type(vertices, rows)
+    fits = vertices.dtype == dtype and vertices.flags.writeable
+    out = vertices if fits else np.empty(vertices.shape, dtype)
+    _kernels.place(vertices, rows, out, threads)
+    if np.linalg.det(rows[:, :3]) < 0:
+        _kernels.flip(triangles, threads)
+    if normals is not None:
+        _kernels.turn_normals(normals, rows, threads)
+    return Surface(out, triangles, normals, space, unit)
+
+
+def _coordinate_type(vertices: npt.NDArray[Any], rows: npt.NDArray[np.float64]) -> type:
+    """float32, or float64 where the steps of float32 are too coarse for the shortest voxel edge.
+
+    vertices: in index space, so that a column of `rows` (3, 4) is a voxel edge; float64 ones stay so.
+    """
+    if not len(vertices) or vertices.dtype == np.float64:
+        return vertices.dtype.type
+    low, high = np.array(_kernels.bounds(vertices)).reshape(2, 3)
+    linear, offset = rows[:, :3], rows[:, 3]
+    farthest = np.abs(linear @ (low + high) / 2 + offset) + np.abs(linear) @ (high - low) / 2
+    largest = farthest.max()
+    if not largest < np.finfo(np.float32).max:
+        return np.float64
+    shortest = np.sqrt((linear**2).sum(axis=0)).min()
+    return np.float32 if np.spacing(np.float32(largest)) <= _COARSEST_STEP * shortest else np.float64

@@ -1,0 +1,72 @@
+"""Measure a surface: how large it is, and whether it is closed, manifold and oriented.
+
+Edges are those between the corners of triangles; positions never join two vertices. A triangle with a
+repeated corner counts as degenerate and takes part in nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from isocore import _kernels
+from isocore.surface import Surface
+
+
+@dataclass(frozen=True, slots=True)
+class Measurements:
+    """What a surface is; lengths, areas and volumes are in `unit`, its square and its cube.
+
+    components: pieces that share no vertex.
+    boundary_edges, nonmanifold_edges: edges with one triangle, and with more than two.
+    nonmanifold_vertices: vertices whose triangles form neither one ring nor one fan.
+    misoriented_edges: edges whose two triangles turn against each other.
+    euler: used vertices - edges + triangles.
+    watertight: every edge has two triangles that turn the same way.
+    manifold: no non-manifold edge and no non-manifold vertex.
+    volume: enclosed, positive when normals point outside; None unless watertight.
+    bounds: lowest and highest corner of the box around all vertices; None where there is none.
+    degenerate: triangles with a repeated corner or an area of exactly zero.
+    """
+
+    triangles: int
+    vertices: int
+    components: int
+    boundary_edges: int
+    nonmanifold_edges: int
+    nonmanifold_vertices: int
+    misoriented_edges: int
+    euler: int
+    watertight: bool
+    manifold: bool
+    area: float
+    volume: float | None
+    bounds: tuple[tuple[float, float, float], tuple[float, float, float]] | None
+    degenerate: int
+    unit: str
+
+
+def measure(surface: Surface, threads: int = 1) -> Measurements:
+    """Measure `surface`. The result does not depend on `threads`.
+
+    Raises ValueError if a triangle names a vertex that does not exist.
+    """
+    counts, area, volume, box = _kernels.measure(surface.vertices, surface.triangles, threads)
+    components, boundary, nonmanifold, nonmanifold_vertices, misoriented, euler, degenerate = counts
+    watertight = boundary == nonmanifold == misoriented == 0
+    return Measurements(
+        triangles=len(surface.triangles),
+        vertices=len(surface.vertices),
+        components=components,
+        boundary_edges=boundary,
+        nonmanifold_edges=nonmanifold,
+        nonmanifold_vertices=nonmanifold_vertices,
+        misoriented_edges=misoriented,
+        euler=euler,
+        watertight=watertight,
+        manifold=nonmanifold == nonmanifold_vertices == 0,
+        area=area,
+        volume=volume if watertight else None,
+        bounds=(box[:3], box[3:]) if len(surface.vertices) else None,
+        degenerate=degenerate,
+        unit=surface.unit,
+    )

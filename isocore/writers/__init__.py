@@ -1,0 +1,59 @@
+"""The table of mesh formats, and how a surface gets into a file.
+
+To add one: a function in its own file and a row below. Writers see a stream, never a path, and write neither
+times nor names: the same surface gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+from isocore.errors import OptionError, writing
+from isocore.surface import Surface
+from isocore.whole_file import whole_file
+from isocore.writers.obj import write_obj
+from isocore.writers.ply import write_ply
+from isocore.writers.stl import write_stl
+
+Writer = Callable[[BinaryIO, Surface, int], tuple[str, ...]]
+
+#: suffix -> writer(stream, surface, threads), which returns its warnings.
+WRITERS: dict[str, Writer] = {".obj": write_obj, ".ply": write_ply, ".stl": write_stl}
+
+FORMATS = tuple(suffix[1:] for suffix in WRITERS)
+
+
+def write(
+    surface: Surface, target: os.PathLike[str] | str, format: str | None = None, *, threads: int = 1
+) -> tuple[str, ...]:
+    """Write `surface` to the file `target`, in `format` or by the suffix; returns warnings.
+
+    The file appears whole or not at all; missing folders are made, and an existing file is replaced.
+    Raises OptionError for an unknown format, OutputError if the disk refuses.
+    """
+    writer = writer_for(target, format)
+    with whole_file(target) as stream:
+        return tuple(f"{os.fspath(target)}: {warning}" for warning in writer(stream, surface, threads))
+
+
+def write_to(stream: BinaryIO, surface: Surface, format: str, *, threads: int = 1) -> tuple[str, ...]:
+    """Write `surface` to an open binary stream, such as stdout's; returns warnings."""
+    writer = writer_for("-", format)
+    with writing("-"):
+        warnings = writer(stream, surface, threads)
+        stream.flush()
+        return warnings
+
+
+def writer_for(target: os.PathLike[str] | str, format: str | None = None) -> Writer:
+    """The writer that `format`, or else the suffix of `target`, asks for; OptionError if there is none."""
+    name = os.fspath(target)
+    suffix = Path(name).suffix.lower() if format is None else f".{format.lower()}"
+    writer = WRITERS.get(suffix)
+    if writer is not None:
+        return writer
+    seen = f"{format or suffix} is not a format isocore writes" if format or suffix else "has no suffix"
+    raise OptionError(f"{name}: {seen}; choose one of {', '.join(FORMATS)} with --format")
