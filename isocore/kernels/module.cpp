@@ -6,4 +6,5 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_processor(module);
     isocore::python::bind_marching_cubes(module);
     isocore::python::bind_surface(module);
+    isocore::python::bind_marching_cells(module);
 }

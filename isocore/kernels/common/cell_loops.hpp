@@ -8,6 +8,9 @@
 // cell across drew the same one, four triangles would share it. So such diagonals are avoided where they can be; where
 // not, they are shared out: between the two crossings on parallel edges along the face's lower axis only to the cell
 // above the face, all others only to the cell below. Then every loop can be cut without a vertex in its middle.
+//
+// Cells of an unstructured mesh have no above and below, so their table (mesh_cases.hpp) draws no diagonal in a face at
+// all: a loop that cannot be cut so gets a vertex in its middle.
 #pragma once
 
 #include <array>
@@ -21,21 +24,26 @@ namespace isocore::cell_loops {
 inline constexpr int kMaxTriangles = 10;
 inline constexpr int kCases = 656;
 
-struct Case {
+template <int max_triangles>
+struct CaseOf {
     std::uint8_t triangles = 0;
     std::uint8_t loops = 0;
-    std::array<std::uint8_t, 3 * kMaxTriangles> edges{};  // three per triangle
+    std::array<std::uint8_t, 3 * max_triangles> edges{};  // three per triangle; 12 + n is the middle of loop n
 };
+using Case = CaseOf<kMaxTriangles>;
 
 struct Corners {
     std::uint16_t first = 0;      // its cases follow each other, by the decisions of its ambiguous faces
     std::uint8_t ambiguous = 0;   // one bit per face with alternating corners
 };
 
-struct CaseTable {
+template <class AnyCase>
+struct TableOf {
     std::array<Corners, 256> corners{};
-    std::array<Case, kCases> cases{};
+    std::array<AnyCase, kCases> cases{};
 };
+
+enum class FaceDiagonals { shared_out, none };
 
 namespace derivation {
 
@@ -83,7 +91,7 @@ constexpr Loops trace(unsigned corners, unsigned joined) {
 inline constexpr int kInFace = 1'000, kForbidden = 1'000'000;
 
 // What a diagonal between two crossed edges costs: its squared length, measured in half cells.
-constexpr int diagonal_cost(int a, int b) {
+constexpr int diagonal_cost(int a, int b, FaceDiagonals rule) {
     int cost = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const auto place = [&](int edge) { return edge / 4 == axis ? 1 : 2 * (cube::low_corner(edge) >> axis & 1); };
@@ -91,17 +99,25 @@ constexpr int diagonal_cost(int a, int b) {
     }
     const int face = cube::shared_face(a, b);
     if (face < 0) return cost;
+    if (rule == FaceDiagonals::none) return cost + kForbidden;
     const bool for_cell_above = a / 4 == b / 4 && a / 4 == cube::other_axes(face / 2)[0];
     const bool cell_is_above = (face & 1) == 0;
     return cost + (for_cell_above == cell_is_above ? kInFace : kForbidden);
 }
 
 // The cheapest triangulation of one loop, by dynamic programming over its sub-polygons.
-constexpr void triangulate(const std::array<int, 12>& loop, int length, Case& out) {
+template <class AnyCase>
+constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiagonals rule, int middle, AnyCase& out) {
+    const auto draw = [&](int a, int b, int c) {
+        const auto place = static_cast<unsigned>(3 * out.triangles++);
+        out.edges[place] = static_cast<std::uint8_t>(a);
+        out.edges[place + 1] = static_cast<std::uint8_t>(b);
+        out.edges[place + 2] = static_cast<std::uint8_t>(c);
+    };
     std::array<std::array<int, 12>, 12> cost{}, apex{};
     const auto chord = [&](int i, int j) {
         const bool is_side = j - i == 1 || (i == 0 && j == length - 1);
-        return is_side ? 0 : diagonal_cost(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>(j)]);
+        return is_side ? 0 : diagonal_cost(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>(j)], rule);
     };
     for (int span = 2; span < length; ++span) {
         for (int i = 0; i + span < length; ++i) {
@@ -118,7 +134,11 @@ constexpr void triangulate(const std::array<int, 12>& loop, int length, Case& ou
             cost[static_cast<unsigned>(i)][static_cast<unsigned>(j)] = best;
         }
     }
-    if (cost[0][static_cast<unsigned>(length - 1)] >= kForbidden) throw "a loop has no legal triangulation";
+    if (cost[0][static_cast<unsigned>(length - 1)] >= kForbidden) {
+        if (rule != FaceDiagonals::none) throw "a loop has no legal triangulation";
+        for (int i = 0; i < length; ++i) draw(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>((i + 1) % length)], middle);
+        return;
+    }
     std::array<std::array<int, 2>, 24> open{};
     int waiting = 0;
     open[static_cast<unsigned>(waiting++)] = {0, length - 1};
@@ -126,20 +146,20 @@ constexpr void triangulate(const std::array<int, 12>& loop, int length, Case& ou
         const auto [i, j] = open[static_cast<unsigned>(--waiting)];
         if (j - i < 2) continue;
         const int k = apex[static_cast<unsigned>(i)][static_cast<unsigned>(j)];
-        const auto place = static_cast<unsigned>(3 * out.triangles++);
-        out.edges[place] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(i)]);
-        out.edges[place + 1] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(k)]);
-        out.edges[place + 2] = static_cast<std::uint8_t>(loop[static_cast<unsigned>(j)]);
+        draw(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>(k)], loop[static_cast<unsigned>(j)]);
         open[static_cast<unsigned>(waiting++)] = {i, k};
         open[static_cast<unsigned>(waiting++)] = {k, j};
     }
 }
 
-constexpr Case derive_case(unsigned corners, unsigned joined) {
+template <class AnyCase>
+constexpr AnyCase derive_case(unsigned corners, unsigned joined, FaceDiagonals rule) {
     const Loops loops = trace(corners, joined);
-    Case out;
+    AnyCase out;
     out.loops = static_cast<std::uint8_t>(loops.count);
-    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) triangulate(loops.edges[n], loops.lengths[n], out);
+    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) {
+        triangulate(loops.edges[n], loops.lengths[n], rule, 12 + static_cast<int>(n), out);
+    }
     return out;
 }
 
@@ -152,8 +172,9 @@ constexpr unsigned spread(unsigned packed, unsigned mask) {
     return out;
 }
 
-constexpr CaseTable derive() {
-    CaseTable table;
+template <class AnyCase>
+constexpr TableOf<AnyCase> derive(FaceDiagonals rule) {
+    TableOf<AnyCase> table;
     unsigned filled = 0;
     for (unsigned corners = 0; corners < 256; ++corners) {
         unsigned ambiguous = 0;
@@ -162,7 +183,7 @@ constexpr CaseTable derive() {
         }
         table.corners[corners] = {static_cast<std::uint16_t>(filled), static_cast<std::uint8_t>(ambiguous)};
         for (unsigned packed = 0; packed < 1u << std::popcount(ambiguous); ++packed) {
-            table.cases[filled++] = derive_case(corners, spread(packed, ambiguous));
+            table.cases[filled++] = derive_case<AnyCase>(corners, spread(packed, ambiguous), rule);
         }
     }
     if (filled != kCases) throw "the case table has another size than expected";
@@ -171,6 +192,7 @@ constexpr CaseTable derive() {
 
 }  // namespace derivation
 
-inline constexpr CaseTable kTable = derivation::derive();
+using CaseTable = TableOf<Case>;
+inline constexpr CaseTable kTable = derivation::derive<Case>(FaceDiagonals::shared_out);
 
 }  // namespace isocore::cell_loops

@@ -1,0 +1,122 @@
+// edge_merger.cpp - See edge_merger.hpp. Threads never meet: every run of edges knows its places in every range before
+// it is scattered, and every range its vertices before they are written.
+#include "marching_cells/edge_merger.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <stdexcept>
+
+#include "common/parallel.hpp"
+
+namespace isocore::marching_cells {
+namespace {
+
+constexpr std::size_t kEdgesPerRange = 4096, kMaxRanges = 1024, kFewEdges = 48;
+
+struct Seen {
+    std::int32_t low, high;
+    std::uint32_t place;   // in the order of all edges seen
+    std::int32_t vertex;   // within its range
+};
+
+// Orders a range by lower point, keeping the order of places: a counting sort, or a comparison where points are many.
+void sort_by_low(Array<Seen>& range, std::int32_t first, std::size_t points) {
+    const auto before = [](const Seen& a, const Seen& b) { return a.low != b.low ? a.low < b.low : a.place < b.place; };
+    if (points > 16 * range.size()) return std::sort(range.begin(), range.end(), before);
+    std::vector<std::uint32_t> start(points + 1);
+    for (const Seen& edge : range) ++start[static_cast<std::size_t>(edge.low - first) + 1];
+    for (std::size_t n = 1; n < start.size(); ++n) start[n] += start[n - 1];
+    Array<Seen> sorted(range.size());
+    for (const Seen& edge : range) sorted[start[static_cast<std::size_t>(edge.low - first)]++] = edge;
+    range.swap(sorted);
+}
+
+// Numbers the distinct edges of a sorted range from 0 on.
+Array<Edge> number(Array<Seen>& range) {
+    Array<Edge> found;
+    for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end) {
+        while (end < range.size() && range[end].low == range[begin].low) ++end;
+        if (end - begin > kFewEdges * kFewEdges) {
+            std::sort(range.begin() + static_cast<std::ptrdiff_t>(begin), range.begin() + static_cast<std::ptrdiff_t>(end),
+                      [](const Seen& a, const Seen& b) { return a.high != b.high ? a.high < b.high : a.place < b.place; });
+        }
+        const std::size_t first = found.size();
+        for (std::size_t n = begin; n < end; ++n) {
+            Seen& edge = range[n];
+            if (edge.low == edge.high) {
+                edge.vertex = -1;
+                continue;
+            }
+            // The last ones first: after a sort by the higher point the match, if any, is the last.
+            std::size_t match = found.size();
+            while (match > first && found[match - 1].high != edge.high && !(end - begin > kFewEdges * kFewEdges)) --match;
+            if (match > first && found[match - 1].high == edge.high) {
+                edge.vertex = static_cast<std::int32_t>(match - 1);
+            } else {
+                edge.vertex = static_cast<std::int32_t>(found.size());
+                found.push_back({edge.low, edge.high});
+            }
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int threads) {
+    std::size_t total = 0;
+    for (const auto& run : seen) total += run.size();
+    if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("the surface has too many edges");
+    const std::size_t ranges = std::clamp<std::size_t>(std::bit_ceil(total / kEdgesPerRange + 1), 1, kMaxRanges);
+    const std::size_t width = points / ranges + 1;  // points per range
+    const auto range_of = [&](const Edge& edge) { return static_cast<std::size_t>(edge.low) / width; };
+
+    // places[run][range]: first the count, then where the run's edges go.
+    std::vector<std::vector<std::uint32_t>> places(seen.size());
+    parallel_for(threads, seen.size(), [&](std::size_t run) {
+        places[run].resize(ranges);
+        for (const Edge& edge : seen[run]) ++places[run][range_of(edge)];
+    });
+    std::vector<Array<Seen>> sorted(ranges);
+    for (std::size_t range = 0; range < ranges; ++range) {
+        std::uint32_t size = 0;
+        for (auto& counts : places) {
+            const std::uint32_t count = counts[range];
+            counts[range] = size;
+            size += count;
+        }
+        sorted[range].resize(size);
+    }
+    std::vector<std::uint32_t> first_place(seen.size());
+    for (std::size_t run = 1; run < seen.size(); ++run) first_place[run] = first_place[run - 1] + static_cast<std::uint32_t>(seen[run - 1].size());
+    parallel_for(threads, seen.size(), [&](std::size_t run) {
+        std::uint32_t place = first_place[run];
+        for (const Edge& edge : seen[run]) {
+            const std::size_t range = range_of(edge);
+            sorted[range][places[run][range]++] = {edge.low, edge.high, place++, 0};
+        }
+    });
+
+    std::vector<Array<Edge>> found(ranges);
+    parallel_for(threads, ranges, [&](std::size_t range) {
+        sort_by_low(sorted[range], static_cast<std::int32_t>(range * width), width);
+        found[range] = number(sorted[range]);
+    });
+    std::vector<std::size_t> first_vertex(ranges + 1);
+    for (std::size_t range = 0; range < ranges; ++range) first_vertex[range + 1] = first_vertex[range] + found[range].size();
+    if (first_vertex[ranges] > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+        throw std::length_error("the surface has more vertices than 2^31 - 1; choose another isovalue");
+    }
+    Merged merged;
+    merged.edges.resize(first_vertex[ranges]);
+    merged.vertex_of.resize(total);
+    parallel_for(threads, ranges, [&](std::size_t range) {
+        const auto first = static_cast<std::int32_t>(first_vertex[range]);
+        std::copy(found[range].begin(), found[range].end(), merged.edges.begin() + first);
+        for (const Seen& edge : sorted[range]) merged.vertex_of[edge.place] = edge.vertex < 0 ? -1 : first + edge.vertex;
+    });
+    return merged;
+}
+
+}  // namespace isocore::marching_cells

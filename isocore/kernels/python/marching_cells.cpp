@@ -1,0 +1,36 @@
+// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads), for float32 and float64 values.
+#include "marching_cells/marching_cells.hpp"
+
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+
+namespace isocore::python {
+namespace {
+
+template <class Value>
+nb::object march(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
+                 const Vector<Value>& values, double isovalue, int threads) {
+    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
+    const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
+    marching_cells::Mesh mesh;
+    {
+        const nb::gil_scoped_release unlocked;
+        mesh = marching_cells::march(field, cells, isovalue, threads);
+    }
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.intersected);
+}
+
+template <class Value>
+void bind(nb::module_& module) {
+    module.def("marching_cells", &march<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
+               nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1);
+}
+
+}  // namespace
+
+void bind_marching_cells(nb::module_& module) {
+    bind<float>(module);
+    bind<double>(module);
+}
+
+}  // namespace isocore::python
