@@ -1,0 +1,120 @@
+"""Turn the arrays of a VTU file into numpy arrays, one at a time and only those that are asked for."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from mmap import mmap
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import InputError
+from isocore.readers.vtu_blocks import BadBlock, Segments, missing_compressor, payload
+from isocore.readers.vtu_layout import ArrayTag, Layout
+
+DTYPES = {
+    **{f"Int{bits}": f"i{bits // 8}" for bits in (8, 16, 32, 64)},
+    **{f"UInt{bits}": f"u{bits // 8}" for bits in (8, 16, 32, 64)},
+    **{f"Float{bits}": f"f{bits // 8}" for bits in (32, 64)},
+}
+_SPACE = re.compile(rb"\s")
+_TEXT = re.compile(rb"\S")
+_CHUNK = 1 << 18  # bytes of ascii split into words at a time: words take ten times their letters
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayReader:
+    """Reads the arrays of one mapped VTU file."""
+
+    path: str
+    data: mmap
+    layout: Layout
+
+    def __post_init__(self) -> None:
+        reason = missing_compressor(self.layout.compressor)
+        if reason:
+            raise InputError(f"{self.path}: {reason}")
+
+    def read(self, tag: ArrayTag, values: int | None = None) -> npt.NDArray[Any]:
+        """The array's numbers, flat, in the file's type and byte order; `values` is how many there have to be.
+
+        The result may look into the mapped file: copy what is to outlive it.
+        """
+        try:
+            numbers = self._ascii(tag) if tag.format == "ascii" else self._binary(tag)
+            if values is not None and len(numbers) != values:
+                raise BadBlock(f"holds {len(numbers):,} numbers where its piece promises {values:,}; copy the file again")
+        except BadBlock as error:
+            raise InputError(f"{self.path}: array {tag.name!r} {error}") from error
+        return numbers
+
+    def _dtype(self, tag: ArrayTag) -> np.dtype[Any]:
+        if tag.type not in DTYPES:
+            raise BadBlock(f"has type {tag.type!r}; one of {', '.join(DTYPES)} is needed")
+        return np.dtype(self._order() + DTYPES[tag.type])
+
+    def _order(self) -> str:
+        return "<" if self.layout.byte_order == "LittleEndian" else ">"
+
+    def _binary(self, tag: ArrayTag) -> npt.NDArray[Any]:
+        dtype = self._dtype(tag)
+        if tag.format == "binary":
+            text, base64 = self._inline(tag), True
+        elif tag.format == "appended":
+            text, base64 = self._appended(tag)
+        else:
+            raise BadBlock(f"has format {tag.format!r}; ascii, binary or appended is needed")
+        header = np.dtype(self._order() + DTYPES[self.layout.header_type])
+        block = payload(Segments(text, header, base64=base64), self.layout.compressor)
+        if len(block) % dtype.itemsize:
+            raise BadBlock(f"has {len(block):,} bytes, which is no multiple of {dtype.itemsize}; copy the file again")
+        return np.frombuffer(block, dtype)
+
+    def _inline(self, tag: ArrayTag) -> memoryview:
+        """The base64 letters between the tags, without white space."""
+        first, end = tag.text
+        found = _TEXT.search(self.data, first, end)
+        if found is None:
+            return memoryview(b"")
+        first = found.start()
+        tail = self.data[max(first, end - 4096) : end]
+        end -= len(tail) - len(tail.rstrip())
+        if any(self.data.find(space, first, end) >= 0 for space in (b"\n", b" ", b"\t", b"\r")):
+            return memoryview(self.data[first:end].translate(None, b" \t\r\n"))
+        return memoryview(self.data)[first:end]
+
+    def _appended(self, tag: ArrayTag) -> tuple[memoryview, bool]:
+        if self.layout.appended is None or tag.offset is None:
+            raise BadBlock("is said to be appended, but the file has no appended data for it; copy it again")
+        encoding, start = self.layout.appended
+        if encoding not in ("raw", "base64"):
+            raise BadBlock(f"is appended as {encoding!r}; raw or base64 is needed")
+        return memoryview(self.data)[start + tag.offset :], encoding == "base64"
+
+    def _ascii(self, tag: ArrayTag) -> npt.NDArray[Any]:
+        dtype = self._dtype(tag).newbyteorder("=")
+        first, end = tag.text
+        try:
+            if dtype.kind == "f":
+                return self._floats(first, end).astype(dtype, copy=False)
+            text = self.data[first:end].strip()
+            numbers = np.fromstring(text, np.int64, sep=" ") if text else np.empty(0, np.int64)
+        except ValueError as error:
+            raise BadBlock("holds a word that is not a number; copy the file again") from error
+        limits = np.iinfo(dtype)
+        if dtype.itemsize < 8 and numbers.size and (numbers.min() < limits.min or numbers.max() > limits.max):
+            raise BadBlock(f"holds a number that is no {tag.type}; copy the file again")
+        return numbers.astype(dtype, copy=False)
+
+    def _floats(self, first: int, end: int) -> npt.NDArray[np.float64]:
+        """Through Python's float, which is five times as fast as numpy's own parser."""
+        parts = [np.empty(0)]
+        while first < end:
+            space = _SPACE.search(self.data, min(first + _CHUNK, end), end)
+            stop = space.end() if space else end
+            words = self.data[first:stop].split()
+            parts.append(np.fromiter(map(float, words), np.float64, len(words)))
+            first = stop
+        return np.concatenate(parts)

@@ -1,0 +1,121 @@
+"""Choose the field of a VTU file that is contoured, and make one number per point of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import FieldError, OptionError
+
+#: What VTK's own filters leave behind to find their way; chosen by name only.
+BOOKKEEPING = ("vtkGhostType", "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkValidPointMask")
+_EXACT_IN_FLOAT32 = 1 << 24
+
+
+class FieldChoice(Protocol):
+    """The reading options that matter here."""
+
+    @property
+    def field(self) -> str | None: ...
+    @property
+    def component(self) -> int | Literal["magnitude"] | str | None: ...
+
+
+@dataclass(frozen=True, slots=True)
+class FieldInfo:
+    """A field a file offers. of: "points" or "cells"."""
+
+    name: str
+    components: int
+    of: Literal["points", "cells"]
+    type: str
+
+    def __str__(self) -> str:
+        return self.name if self.components == 1 else f"{self.name} ({self.components} components)"
+
+
+def choose(path: str, fields: Sequence[FieldInfo], options: FieldChoice) -> FieldInfo:
+    """The field to read: the one asked for, else the only one there is."""
+    if options.field is not None:
+        chosen = [field for field in fields if field.name == options.field]
+        if not chosen:
+            raise OptionError(f"{path}: has no field {options.field!r}; {_offer(fields)}")
+        field = min(chosen, key=lambda found: found.of != "points")
+    else:
+        useful = [field for field in fields if field.name not in BOOKKEEPING]
+        candidates = [f for f in useful if f.of == "points"] or useful
+        if not candidates:
+            raise FieldError(f"{path}: holds no point or cell field, so there is nothing to contour; add one")
+        if len(candidates) > 1:
+            raise OptionError(f"{path}: holds {len(candidates)} {candidates[0].of[:-1]} fields"
+                              f" ({', '.join(f.name for f in candidates)}); choose one with --field")
+        field = candidates[0]
+    _check_component(path, field, options.component)
+    return field
+
+
+def _offer(fields: Sequence[FieldInfo]) -> str:
+    of_points = [f.name for f in fields if f.of == "points"]
+    of_cells = [f.name for f in fields if f.of == "cells"]
+    offers = [f"{kind}: {', '.join(names)}" for kind, names in (("points", of_points), ("cells", of_cells)) if names]
+    return f"it holds for {'; for '.join(offers)}" if offers else "it holds none"
+
+
+def _check_component(path: str, field: FieldInfo, component: int | str | None) -> None:
+    if field.components == 1 and component in (None, 0):
+        return
+    last = field.components - 1
+    if component is None:
+        raise OptionError(f"{path}: field {field.name!r} has {field.components} components;"
+                          f" choose --component 0 to {last}, or magnitude")
+    if field.components == 1:
+        raise OptionError(f"{path}: field {field.name!r} has one component; leave out --component")
+    if component != "magnitude" and not (isinstance(component, int) and 0 <= component <= last):
+        raise OptionError(f"{path}: field {field.name!r} has no component {component}; use 0 to {last}, or magnitude")
+
+
+def scalar(values: npt.NDArray[Any], field: FieldInfo, component: int | str | None) -> npt.NDArray[Any]:
+    """One float32 or float64 per tuple of the flat `values`, in memory of its own.
+
+    Integers become float32 where that holds each of them exactly, float64 otherwise.
+    """
+    tuples = values.reshape(-1, field.components)
+    if component == "magnitude":
+        squares = tuples.astype(np.float64)
+        length = np.sqrt(np.einsum("ij,ij->i", squares, squares))
+        return length.astype(np.float32) if values.dtype.kind == "f" and values.dtype.itemsize == 4 else length
+    column = tuples[:, component if isinstance(component, int) else 0]
+    if column.dtype.kind == "f":
+        return np.array(column, dtype=column.dtype.newbyteorder("="))
+    largest = max(int(column.max()), -int(column.min())) if len(column) else 0
+    return column.astype(np.float32 if largest <= _EXACT_IN_FLOAT32 else np.float64)
+
+
+def averaged(cell_values: npt.NDArray[Any], blocks: Sequence[tuple[npt.NDArray[np.int32], npt.NDArray[Any]]],
+             points: int) -> npt.NDArray[Any]:
+    """Per point the mean of its cells; the mean of all cells where a point has none.
+
+    cell_values: (c,) float. blocks: pairs of (m, k) corners and (m,) values.
+    """
+    total, count = np.zeros(points), np.zeros(points, np.int64)
+    for cells, weights in blocks:
+        for column in cells.T:
+            total += np.bincount(column, weights=weights, minlength=points)
+            count += np.bincount(column, minlength=points)
+    lonely = count == 0
+    total[lonely] = cell_values.mean() if len(cell_values) else 0.0
+    count[lonely] = 1
+    return (total / count).astype(cell_values.dtype, copy=False)
+
+
+def value_warnings(name: str, values: npt.NDArray[Any]) -> list[str]:
+    """What is odd about the values: not finite, or integers beyond float64."""
+    warnings = []
+    bad = int(values.size - np.count_nonzero(np.isfinite(values)))
+    if bad:
+        warnings.append(f"{bad:,} of {values.size:,} values of {name} are not finite; they count as outside")
+    return warnings

@@ -1,0 +1,78 @@
+"""Where the arrays of a VTU file come from: the mapped file, decoded one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from mmap import mmap
+from typing import Any, Protocol
+
+import numpy.typing as npt
+
+from isocore.errors import FieldError, InputError
+from isocore.readers.vtu_arrays import DTYPES, ArrayReader
+from isocore.readers.vtu_fields import FieldInfo
+from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
+
+
+@dataclass(frozen=True, slots=True)
+class PieceData:
+    """The arrays of one piece as they are in the file; values: flat, of its points or its cells."""
+
+    points: npt.NDArray[Any]
+    types: npt.NDArray[Any]
+    offsets: npt.NDArray[Any]
+    connectivity: npt.NDArray[Any]
+    values: npt.NDArray[Any]
+
+
+class Source(Protocol):
+    """A file whose fields are known and whose pieces can be read."""
+
+    @property
+    def fields(self) -> tuple[FieldInfo, ...]: ...
+    def pieces(self, field: FieldInfo) -> Iterator[PieceData]: ...
+
+
+class MappedSource:
+    """A mapped file whose arrays are decoded here."""
+
+    def __init__(self, path: str, data: mmap, layout: Layout) -> None:
+        self.path = path
+        self.arrays = ArrayReader(path, data, layout)
+        self.full = [piece for piece in layout.pieces if piece.points and piece.cells]
+        if not self.full:
+            raise FieldError(f"{path}: holds no cells, so there is nothing to contour")
+
+    @property
+    def fields(self) -> tuple[FieldInfo, ...]:
+        """Of the first piece; the others have to hold the one that is chosen."""
+        arrays = self.full[0].arrays
+        found = [FieldInfo(tag.name, tag.components, "points", tag.type) for tag in arrays["PointData"]]
+        found += [FieldInfo(tag.name, tag.components, "cells", tag.type) for tag in arrays["CellData"]]
+        return tuple({(f.of, f.name): f for f in found if f.type in DTYPES and f.components}.values())
+
+    def pieces(self, field: FieldInfo) -> Iterator[PieceData]:
+        read = self.arrays.read
+        for piece in self.full:
+            values = self._tag(piece, "PointData" if field.of == "points" else "CellData", field.name)
+            tuples = piece.points if field.of == "points" else piece.cells
+            if values.components != field.components:
+                raise InputError(f"{self.path}: field {field.name!r} has {field.components} components in one piece"
+                                 f" and {values.components} in another; write it again")
+            yield PieceData(
+                points=read(self._tag(piece, "Points", None), 3 * piece.points).reshape(-1, 3),
+                types=read(self._tag(piece, "Cells", "types"), piece.cells),
+                offsets=read(self._tag(piece, "Cells", "offsets"), piece.cells),
+                connectivity=read(self._tag(piece, "Cells", "connectivity")),
+                values=read(values, tuples * field.components),
+            )
+
+    def _tag(self, piece: Piece, section: str, name: str | None) -> ArrayTag:
+        """The first array of that name: of several time steps, the first."""
+        for tag in piece.arrays[section]:
+            if name is None or tag.name == name:
+                return tag
+        number = self.full.index(piece) + 1
+        wanted = f"array {name!r}" if name else "coordinates"
+        raise InputError(f"{self.path}: has no {wanted} in <{section}> of piece {number}; write the file again")
