@@ -1,8 +1,8 @@
 """Split wedges, pyramids and the hexahedra beside them into tetrahedra whose faces agree.
 
-Every quad face is cut from its lowest point number, so the two cells that share it cut it the same way without
-knowing of each other. A cell is the cone from its lowest corner over the triangles of the faces that corner is
-not on; the faces it is on are then cut from it too, as they have to be.
+Every quad face is cut from its lowest point number, so the two cells that share it cut it the same way
+without knowing of each other. A cell is the cone from its lowest corner over the triangles of the faces that
+corner is not on; the faces it is on are then cut from it too, as they have to be.
 
 A hexahedron that stays whole is contoured by another rule on its faces. So whatever hexahedra hang together
 through quad faces with a cell that is split are split with it.
@@ -55,7 +55,9 @@ def split_cells(tets: Cells, hexes: Cells, wedges: Cells, pyramids: Cells) -> Sp
         return SplitCells(tets, hexes, collapsed, 0)
     split = _hang_together(hexes, flat[1], [_faces(wedges, "wedge"), _faces(pyramids, "pyramid")])
     parts = [tets, cones(hexes[split], "hex"), cones(wedges, "wedge"), cones(pyramids, "pyramid")]
-    return SplitCells(np.concatenate(parts), hexes[~split], collapsed, int(np.count_nonzero(split & ~flat[1])))
+    return SplitCells(
+        np.concatenate(parts), hexes[~split], collapsed, int(np.count_nonzero(split & ~flat[1]))
+    )
 
 
 def repeats_a_corner(cells: Cells) -> npt.NDArray[np.bool_]:
@@ -103,13 +105,16 @@ def _faces(cells: Cells, shape: str) -> Cells:
 def _hang_together(hexes: Cells, seeds: npt.NDArray[np.bool_], quads: list[Cells]) -> npt.NDArray[np.bool_]:
     """(h,) True for the hexahedra that reach a seed or one of `quads` through shared quad faces."""
     faces = np.concatenate([_faces(hexes, "hex"), *quads])
-    owner = np.full(len(faces), len(hexes))  # one number past the hexahedra stands for all that is split anyway
+    owner = np.full(
+        len(faces), len(hexes)
+    )  # one number past the hexahedra stands for all that is split anyway
     owner[: 6 * len(hexes)] = np.repeat(np.where(seeds, len(hexes), np.arange(len(hexes))), 6)
     keys = _mixed(faces).sum(axis=1, dtype=np.uint64)
     order = np.argsort(keys, kind="stable")
     same = keys[order[1:]] == keys[order[:-1]]
     labels = _components(len(hexes) + 1, owner[order[1:][same]], owner[order[:-1][same]])
-    return seeds | (labels[:-1] == labels[-1])
+    reached: npt.NDArray[np.bool_] = labels[:-1] == labels[-1]
+    return seeds | reached
 
 
 def _mixed(numbers: Cells) -> npt.NDArray[np.uint64]:

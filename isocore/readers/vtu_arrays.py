@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
-from isocore.readers.vtu_blocks import BadBlock, Segments, missing_compressor, payload
+from isocore.readers.vtu_blocks import BadBlock, Segments, payload
 from isocore.readers.vtu_layout import ArrayTag, Layout
 
 DTYPES = {
@@ -32,20 +32,17 @@ class ArrayReader:
     data: mmap
     layout: Layout
 
-    def __post_init__(self) -> None:
-        reason = missing_compressor(self.layout.compressor)
-        if reason:
-            raise InputError(f"{self.path}: {reason}")
-
     def read(self, tag: ArrayTag, values: int | None = None) -> npt.NDArray[Any]:
-        """The array's numbers, flat, in the file's type and byte order; `values` is how many there have to be.
+        """The array's numbers, flat, in the file's type and byte order; `values`: how many it has to hold.
 
         The result may look into the mapped file: copy what is to outlive it.
         """
         try:
             numbers = self._ascii(tag) if tag.format == "ascii" else self._binary(tag)
             if values is not None and len(numbers) != values:
-                raise BadBlock(f"holds {len(numbers):,} numbers where its piece promises {values:,}; copy the file again")
+                raise BadBlock(
+                    f"holds {len(numbers):,} numbers where its piece promises {values:,}; copy the file again"
+                )
         except BadBlock as error:
             raise InputError(f"{self.path}: array {tag.name!r} {error}") from error
         return numbers
@@ -69,7 +66,9 @@ class ArrayReader:
         header = np.dtype(self._order() + DTYPES[self.layout.header_type])
         block = payload(Segments(text, header, base64=base64), self.layout.compressor)
         if len(block) % dtype.itemsize:
-            raise BadBlock(f"has {len(block):,} bytes, which is no multiple of {dtype.itemsize}; copy the file again")
+            raise BadBlock(
+                f"has {len(block):,} bytes, which is no multiple of {dtype.itemsize}; copy the file again"
+            )
         return np.frombuffer(block, dtype)
 
     def _inline(self, tag: ArrayTag) -> memoryview:

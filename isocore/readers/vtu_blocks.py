@@ -1,8 +1,9 @@
 """Take the bytes of one array block out of a VTU file: raw or base64, plain or compressed.
 
-A block is a header of unsigned integers, then bytes. Plain: one integer, the byte count. Compressed: the number of
-parts, their inflated size, the last one's if it is shorter (else 0), then every part's deflated size. VTK encodes
-header and bytes in base64 one after the other, other programs in one go; `Segments` follows both.
+A block is a header of unsigned integers, then bytes. Plain: one integer, the byte count. Compressed: the
+number of parts, their inflated size, the last one's if it is shorter (else 0), then every part's deflated
+size. VTK encodes header and bytes in base64 one after the other, other programs in one go; `Segments` follows
+both.
 """
 
 from __future__ import annotations
@@ -10,22 +11,31 @@ from __future__ import annotations
 import binascii
 import importlib
 import lzma
+import os
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from itertools import accumulate
+from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
 
-try:
+from isocore.errors import one_line
+
+fast_zlib: ModuleType = zlib
+with suppress(ImportError):  # no wheel for this machine
     from isal import isal_zlib as fast_zlib
-except ImportError:  # no wheel for this machine
-    fast_zlib = zlib
 
 Inflate = Callable[[memoryview, int], bytes]
 
-#: No stream of these formats grows further than this when it is inflated: a header that promises more lies, and
-#: nothing is reserved for it.
+#: No stream of these formats grows further than this when it is inflated: a header that promises more lies,
+#: and nothing is reserved for it.
 LARGEST_RATIO = {"vtkZLibDataCompressor": 1100, "vtkLZMADataCompressor": 1 << 15, "vtkLZ4DataCompressor": 260}
+
+
+_PARTS_AT_ONCE = 256
 
 
 class BadBlock(Exception):
@@ -35,7 +45,8 @@ class BadBlock(Exception):
 class Segments:
     """Takes one segment after the other from the text of a block.
 
-    text: from the block's first byte on, possibly far beyond its end. header: dtype of the header's integers.
+    text: from the block's first byte on, possibly far beyond its end.
+    header: dtype of the header's integers.
     """
 
     def __init__(self, text: memoryview, header: np.dtype[np.unsignedinteger], *, base64: bool) -> None:
@@ -43,7 +54,9 @@ class Segments:
         self.header = header
         self.base64 = base64
         self.position = 0
-        self.carry = b""  # decoded, but of the next segment: it shares a group of four letters with the last one
+        self.carry = (
+            b""  # decoded, but of the next segment: it shares a group of four letters with the last one
+        )
 
     def integers(self, count: int) -> npt.NDArray[np.unsignedinteger]:
         return np.frombuffer(self.take(count * self.header.itemsize), self.header)
@@ -74,56 +87,71 @@ def payload(segments: Segments, compressor: str) -> memoryview:
     """The bytes of a block behind its header, inflated where the file is compressed."""
     if not compressor:
         return segments.take(int(segments.integers(1)[0]))
+    inflate = _inflater(compressor)
     parts = int(segments.integers(1)[0])
     if parts == 0:
         return memoryview(b"")
     full, last = segments.integers(2).tolist()
     sizes = segments.integers(parts).tolist()
-    sizes_inflated = [full] * (parts - 1) + [last or full]
-    total, deflated = sum(sizes_inflated), sum(sizes)
+    wanted = [full] * (parts - 1) + [last or full]
+    total, deflated = sum(wanted), sum(sizes)
     if total > LARGEST_RATIO[compressor] * (deflated + 64):
-        raise BadBlock(f"promises {total:,} bytes, more than its {deflated:,} can inflate to; copy the file again")
+        raise BadBlock(
+            f"promises {total:,} bytes, more than {deflated:,} can inflate to; copy the file again"
+        )
     packed = segments.take(deflated)
-    inflate = _inflater(compressor)
-    result = memoryview(np.empty(total, np.uint8))
-    source = target = 0
-    for size, wanted in zip(sizes, sizes_inflated, strict=True):
-        inflated = inflate(packed[source : source + size], wanted)
-        if len(inflated) != wanted:
-            raise BadBlock(f"inflates to {len(inflated):,} bytes where {wanted:,} are promised; copy the file again")
-        result[target : target + wanted] = inflated
-        source, target = source + size, target + wanted
+    ends = list(accumulate(sizes))
+    slices = [packed[end - size : end] for end, size in zip(ends, sizes, strict=True)]
+    result = memoryview(np.empty(total, np.uint8).data)
+    position = 0
+    for inflated in _inflate_all(inflate, slices, wanted, threads=_threads(compressor)):
+        result[position : position + len(inflated)] = inflated
+        position += len(inflated)
     return result
 
 
-def missing_compressor(compressor: str) -> str:
-    """Why `compressor` cannot be read here, or "": a sentence's end with what to do."""
-    if compressor and compressor not in LARGEST_RATIO:
-        return f"is compressed with {compressor}, which is unknown; write it with zlib or without compression"
-    if compressor == "vtkLZ4DataCompressor":
+def _inflate_all(
+    inflate: Inflate, parts: list[memoryview], wanted: list[int], *, threads: int
+) -> Iterator[bytes]:
+    """Every part, inflated to exactly the size wanted, in order."""
+
+    def one(part: memoryview, size: int) -> bytes:
         try:
-            importlib.import_module("lz4.block")
-        except ImportError:
-            return "is compressed with LZ4; install the Python package lz4, or write the file with zlib"
-    return ""
-
-
-def _inflater(compressor: str) -> Inflate:
-    """inflate(part, wanted): the part's bytes; no more than `wanted` + 1 are of interest."""
-    if compressor == "vtkZLibDataCompressor":
-        run: Inflate = lambda part, wanted: fast_zlib.decompress(part, 15, wanted + 1)  # noqa: E731
-    elif compressor == "vtkLZMADataCompressor":
-        run = lambda part, wanted: lzma.LZMADecompressor().decompress(part, wanted + 1)  # noqa: E731
-    else:
-        lz4 = importlib.import_module("lz4.block")
-        run = lambda part, wanted: lz4.decompress(part, uncompressed_size=wanted)  # noqa: E731
-
-    def inflate(part: memoryview, wanted: int) -> bytes:
-        try:
-            return run(part, wanted)
+            inflated = inflate(part, size)
         except MemoryError:
             raise
         except Exception as error:
-            raise BadBlock(f"is damaged or ends early ({' '.join(str(error).split())}); copy the file again") from error
+            raise BadBlock(f"is damaged or ends early ({one_line(error)}); copy the file again") from error
+        if len(inflated) != size:
+            raise BadBlock(f"inflates to another size than the {size:,} bytes promised; copy the file again")
+        return inflated
 
-    return inflate
+    if threads == 1:
+        yield from map(one, parts, wanted)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        for first in range(0, len(parts), _PARTS_AT_ONCE):
+            batch = slice(first, first + _PARTS_AT_ONCE)
+            yield from pool.map(one, parts[batch], wanted[batch])
+
+
+def _threads(compressor: str) -> int:
+    """LZMA takes milliseconds per part and is worth a thread; for the others the hand-over costs as much."""
+    return min(4, os.cpu_count() or 1) if compressor == "vtkLZMADataCompressor" else 1
+
+
+def _inflater(compressor: str) -> Inflate:
+    """inflate(part, wanted): the bytes of a part; of those beyond `wanted` one is enough to tell."""
+    if compressor == "vtkZLibDataCompressor":
+        return lambda part, wanted: fast_zlib.decompress(part, zlib.MAX_WBITS, wanted + 1)
+    if compressor == "vtkLZMADataCompressor":
+        return lambda part, wanted: lzma.LZMADecompressor().decompress(part, wanted + 1)
+    if compressor != "vtkLZ4DataCompressor":
+        raise BadBlock(f"is compressed with {compressor}, which is unknown; write the file with zlib")
+    try:
+        lz4 = importlib.import_module("lz4.block")
+    except ImportError:
+        raise BadBlock(
+            "is compressed with LZ4; install the Python package lz4, or write it with zlib"
+        ) from None
+    return lambda part, wanted: lz4.decompress(part, uncompressed_size=wanted)

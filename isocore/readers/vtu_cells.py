@@ -11,11 +11,12 @@ import numpy.typing as npt
 from isocore.errors import FieldError, InputError
 
 Shape = Literal["tet", "hex", "wedge", "pyramid"]
+CORNERS: dict[Shape, int] = {"tet": 4, "hex": 8, "wedge": 6, "pyramid": 5}
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A cell type that fills space. nodes: in the file; corners: which of them stay, in VTK's order of `shape`."""
+    """A cell type that fills space: its nodes in the file, and which are its corners, in VTK's order."""
 
     name: str
     shape: Shape
@@ -28,8 +29,7 @@ class Kind:
 
 
 def _kind(name: str, shape: Shape, nodes: int = 0) -> Kind:
-    corners = {"tet": 4, "hex": 8, "wedge": 6, "pyramid": 5}[shape]
-    return Kind(name, shape, nodes or corners, tuple(range(corners)))
+    return Kind(name, shape, nodes or CORNERS[shape], tuple(range(CORNERS[shape])))
 
 
 SOLID = {
@@ -50,13 +50,14 @@ SOLID = {
 }
 #: Points, lines and surfaces: they enclose nothing an isosurface could run through.
 FLAT = {
-    0: "empty cells", 1: "vertices", 2: "vertices", 3: "lines", 4: "polylines", 5: "triangles", 6: "triangle strips",
-    7: "polygons", 8: "pixels", 9: "quads", 21: "quadratic lines", 22: "quadratic triangles", 23: "quadratic quads",
-    28: "biquadratic quads", 30: "quadratic-linear quads", 34: "biquadratic triangles", 35: "cubic lines",
-    36: "quadratic polygons", 51: "parametric curves", 52: "parametric surfaces", 53: "parametric triangles",
-    54: "parametric quads", 60: "higher-order lines", 61: "higher-order triangles", 62: "higher-order quads",
-    63: "higher-order polygons", 68: "Lagrange curves", 69: "Lagrange triangles", 70: "Lagrange quads",
-    75: "Bezier curves", 76: "Bezier triangles", 77: "Bezier quads",
+    0: "empty cells", 1: "vertices", 2: "vertices", 3: "lines", 4: "polylines", 5: "triangles",
+    6: "triangle strips", 7: "polygons", 8: "pixels", 9: "quads", 21: "quadratic lines",
+    22: "quadratic triangles", 23: "quadratic quads", 28: "biquadratic quads", 30: "quadratic-linear quads",
+    34: "biquadratic triangles", 35: "cubic lines", 36: "quadratic polygons", 51: "parametric curves",
+    52: "parametric surfaces", 53: "parametric triangles", 54: "parametric quads", 60: "higher-order lines",
+    61: "higher-order triangles", 62: "higher-order quads", 63: "higher-order polygons",
+    68: "Lagrange curves", 69: "Lagrange triangles", 70: "Lagrange quads", 75: "Bezier curves",
+    76: "Bezier triangles", 77: "Bezier quads",
 }  # fmt: skip
 REFUSED = {
     15: "pentagonal prisms", 16: "hexagonal prisms", 41: "convex point sets", 42: "polyhedra",
@@ -83,10 +84,14 @@ def count_cells(path: str, types: npt.NDArray[Any]) -> dict[int, int]:
     counts = {int(number): int(histogram[number]) for number in np.flatnonzero(histogram)}
     for number, count in counts.items():
         if number in REFUSED:
-            raise FieldError(f"{path}: holds {count:,} {REFUSED[number]}, which cannot be contoured;"
-                             " split them into tetrahedra first")
+            raise FieldError(
+                f"{path}: holds {count:,} {REFUSED[number]}, which cannot be contoured;"
+                " split them into tetrahedra first"
+            )
         if number not in SOLID and number not in FLAT:
-            raise InputError(f"{path}: holds {count:,} cells of type {number}, which VTK does not define; write it again")
+            raise InputError(
+                f"{path}: holds {count:,} cells of type {number}, which VTK does not define; write it again"
+            )
     return counts
 
 
@@ -96,8 +101,12 @@ def _small(path: str, types: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
     return types.astype(np.uint8)
 
 
-def corners(path: str, arrays: tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]], counts: dict[int, int],
-            points: int) -> list[Corners]:
+def corners(
+    path: str,
+    arrays: tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any]],
+    counts: dict[int, int],
+    points: int,
+) -> list[Corners]:
     """The corners of every cell that fills space, by type, numbers checked against `points`.
 
     arrays: (types, offsets, connectivity), in any integer type and byte order.
@@ -105,7 +114,9 @@ def corners(path: str, arrays: tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDA
     types, offsets, connectivity = arrays
     for name, array in (("types", types), ("offsets", offsets), ("connectivity", connectivity)):
         if array.dtype.kind not in "iu":
-            raise InputError(f"{path}: array {name!r} holds {array.dtype.name} numbers, not integers; write it again")
+            raise InputError(
+                f"{path}: array {name!r} holds {array.dtype.name} numbers, not integers; write it again"
+            )
     starts = _starts(path, offsets, connectivity)
     found = []
     for number in counts:
@@ -124,10 +135,14 @@ def _starts(path: str, offsets: npt.NDArray[Any], connectivity: npt.NDArray[Any]
     starts[1:] = offsets
     if len(offsets) and (starts[1:] < starts[:-1]).any():
         cell = int(np.argmax(starts[1:] < starts[:-1]))
-        raise InputError(f"{path}: the offsets fall at cell {cell:,}; they have to grow, so copy the file again")
+        raise InputError(
+            f"{path}: the offsets fall at cell {cell:,}; they have to grow, so copy the file again"
+        )
     if starts[-1] > len(connectivity):
-        raise InputError(f"{path}: its cells need {int(starts[-1]):,} corners, its connectivity holds"
-                         f" {len(connectivity):,}; copy the file again")
+        raise InputError(
+            f"{path}: its cells need {int(starts[-1]):,} corners, its connectivity holds"
+            f" {len(connectivity):,}; copy the file again"
+        )
     return starts
 
 
@@ -138,16 +153,26 @@ def _where(types: npt.NDArray[Any], number: int) -> npt.NDArray[np.intp] | slice
     return slice(first, last + 1) if last - first + 1 == len(numbers) else numbers
 
 
-def _rows(path: str, kind: Kind, starts: npt.NDArray[np.int64], numbers: npt.NDArray[np.intp] | slice,
-          connectivity: npt.NDArray[Any]) -> npt.NDArray[Any]:
+def _rows(
+    path: str,
+    kind: Kind,
+    starts: npt.NDArray[np.int64],
+    numbers: npt.NDArray[np.intp] | slice,
+    connectivity: npt.NDArray[Any],
+) -> npt.NDArray[Any]:
     """(m, nodes) of the connectivity."""
     sizes = np.diff(starts)[numbers]
     if (sizes != kind.nodes).any():
         wrong = int(sizes[np.argmax(sizes != kind.nodes)])
-        raise InputError(f"{path}: one of its {kind.name} has {wrong:,} points instead of {kind.nodes}; copy it again")
+        raise InputError(
+            f"{path}: one of its {kind.name} has {wrong:,} points instead of {kind.nodes}; copy it again"
+        )
+    rows: npt.NDArray[Any]
     if isinstance(numbers, slice):
-        return connectivity[starts[numbers.start] : starts[numbers.stop]].reshape(-1, kind.nodes)
-    return connectivity[starts[numbers][:, None] + np.arange(kind.nodes)]
+        rows = connectivity[starts[numbers.start] : starts[numbers.stop]].reshape(-1, kind.nodes)
+    else:
+        rows = connectivity[starts[numbers][:, None] + np.arange(kind.nodes)]
+    return rows
 
 
 def _narrow(path: str, rows: npt.NDArray[Any], kind: Kind, points: int) -> npt.NDArray[np.int32]:
@@ -161,7 +186,9 @@ def _narrow(path: str, rows: npt.NDArray[Any], kind: Kind, points: int) -> npt.N
         part = np.ascontiguousarray(part, native)
         if part.view(unsigned).max() >= points:  # a negative number is a large one here
             outside = part[(part < 0) | (part >= points)][0]
-            raise InputError(f"{path}: one of its {kind.name} names point {outside:,}, but there are {points:,};"
-                             " copy the file again")
+            raise InputError(
+                f"{path}: one of its {kind.name} names point {outside:,}, but there are {points:,};"
+                " copy the file again"
+            )
         cells[first : first + _CHUNK] = part
     return cells

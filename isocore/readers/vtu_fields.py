@@ -22,7 +22,7 @@ class FieldChoice(Protocol):
     @property
     def field(self) -> str | None: ...
     @property
-    def component(self) -> int | Literal["magnitude"] | str | None: ...
+    def component(self) -> int | str | None: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,52 +51,64 @@ def choose(path: str, fields: Sequence[FieldInfo], options: FieldChoice) -> Fiel
         if not candidates:
             raise FieldError(f"{path}: holds no point or cell field, so there is nothing to contour; add one")
         if len(candidates) > 1:
-            raise OptionError(f"{path}: holds {len(candidates)} {candidates[0].of[:-1]} fields"
-                              f" ({', '.join(f.name for f in candidates)}); choose one with --field")
+            raise OptionError(
+                f"{path}: holds {len(candidates)} {candidates[0].of[:-1]} fields"
+                f" ({', '.join(f.name for f in candidates)}); choose one with --field"
+            )
         field = candidates[0]
-    _check_component(path, field, options.component)
     return field
 
 
 def _offer(fields: Sequence[FieldInfo]) -> str:
     of_points = [f.name for f in fields if f.of == "points"]
     of_cells = [f.name for f in fields if f.of == "cells"]
-    offers = [f"{kind}: {', '.join(names)}" for kind, names in (("points", of_points), ("cells", of_cells)) if names]
+    offers = [
+        f"{kind}: {', '.join(names)}" for kind, names in (("points", of_points), ("cells", of_cells)) if names
+    ]
     return f"it holds for {'; for '.join(offers)}" if offers else "it holds none"
 
 
-def _check_component(path: str, field: FieldInfo, component: int | str | None) -> None:
-    if field.components == 1 and component in (None, 0):
-        return
+def component_of(path: str, field: FieldInfo, asked: int | str | None) -> int | None:
+    """Which component of `field` is meant; None is their magnitude."""
     last = field.components - 1
-    if component is None:
-        raise OptionError(f"{path}: field {field.name!r} has {field.components} components;"
-                          f" choose --component 0 to {last}, or magnitude")
-    if field.components == 1:
+    if last == 0:
+        if asked in (None, 0, "0"):
+            return 0
         raise OptionError(f"{path}: field {field.name!r} has one component; leave out --component")
-    if component != "magnitude" and not (isinstance(component, int) and 0 <= component <= last):
-        raise OptionError(f"{path}: field {field.name!r} has no component {component}; use 0 to {last}, or magnitude")
+    if asked is None:
+        raise OptionError(
+            f"{path}: field {field.name!r} has {field.components} components;"
+            f" choose --component 0 to {last}, or magnitude"
+        )
+    if asked == "magnitude":
+        return None
+    if str(asked).isdecimal() and int(asked) <= last:
+        return int(asked)
+    raise OptionError(f"{path}: field {field.name!r} has no component {asked}; use 0 to {last}, or magnitude")
 
 
-def scalar(values: npt.NDArray[Any], field: FieldInfo, component: int | str | None) -> npt.NDArray[Any]:
+def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> npt.NDArray[Any]:
     """One float32 or float64 per tuple of the flat `values`, in memory of its own.
 
     Integers become float32 where that holds each of them exactly, float64 otherwise.
     """
-    tuples = values.reshape(-1, field.components)
-    if component == "magnitude":
-        squares = tuples.astype(np.float64)
-        length = np.sqrt(np.einsum("ij,ij->i", squares, squares))
-        return length.astype(np.float32) if values.dtype.kind == "f" and values.dtype.itemsize == 4 else length
-    column = tuples[:, component if isinstance(component, int) else 0]
+    tuples = values.reshape(-1, components)
+    single = values.dtype.kind == "f" and values.dtype.itemsize == 4
+    if component is None:
+        squares = tuples.astype(np.float64) ** 2
+        return np.asarray(np.sqrt(squares.sum(axis=1)), np.float32 if single else np.float64)
+    column = tuples[:, component]
     if column.dtype.kind == "f":
         return np.array(column, dtype=column.dtype.newbyteorder("="))
     largest = max(int(column.max()), -int(column.min())) if len(column) else 0
     return column.astype(np.float32 if largest <= _EXACT_IN_FLOAT32 else np.float64)
 
 
-def averaged(cell_values: npt.NDArray[Any], blocks: Sequence[tuple[npt.NDArray[np.int32], npt.NDArray[Any]]],
-             points: int) -> npt.NDArray[Any]:
+def averaged(
+    cell_values: npt.NDArray[Any],
+    blocks: Sequence[tuple[npt.NDArray[np.int32], npt.NDArray[Any]]],
+    points: int,
+) -> npt.NDArray[Any]:
     """Per point the mean of its cells; the mean of all cells where a point has none.
 
     cell_values: (c,) float. blocks: pairs of (m, k) corners and (m,) values.
@@ -109,13 +121,4 @@ def averaged(cell_values: npt.NDArray[Any], blocks: Sequence[tuple[npt.NDArray[n
     lonely = count == 0
     total[lonely] = cell_values.mean() if len(cell_values) else 0.0
     count[lonely] = 1
-    return (total / count).astype(cell_values.dtype, copy=False)
-
-
-def value_warnings(name: str, values: npt.NDArray[Any]) -> list[str]:
-    """What is odd about the values: not finite, or integers beyond float64."""
-    warnings = []
-    bad = int(values.size - np.count_nonzero(np.isfinite(values)))
-    if bad:
-        warnings.append(f"{bad:,} of {values.size:,} values of {name} are not finite; they count as outside")
-    return warnings
+    return np.asarray(total / count, cell_values.dtype)

@@ -73,8 +73,9 @@ class _Scan:
         if len(self.open) == 1:
             self._root(tag, attributes)
         elif tag == "Piece":
-            self.layout.pieces.append(Piece(self._count(attributes, "NumberOfPoints"),
-                                            self._count(attributes, "NumberOfCells")))
+            self.layout.pieces.append(
+                Piece(self._count(attributes, "NumberOfPoints"), self._count(attributes, "NumberOfCells"))
+            )
         elif tag == "DataArray":
             self.runs = []
         elif tag == "AppendedData":
@@ -92,17 +93,23 @@ class _Scan:
 
     def _root(self, tag: str, attributes: dict[str, str]) -> None:
         if tag != "VTKFile":
-            raise InputError(f"{self.path}: is not a VTK file (its first tag is <{tag}>); a .vtu starts with <VTKFile>")
+            raise InputError(
+                f"{self.path}: is not a VTK file (its first tag is <{tag}>); a .vtu starts with <VTKFile>"
+            )
         kind = attributes.get("type", "")
         if kind != "UnstructuredGrid":
-            raise InputError(f"{self.path}: holds a VTK {kind or 'object of no type'}, not an UnstructuredGrid;"
-                             " convert it to one with cells that fill space")
+            raise InputError(
+                f"{self.path}: holds a VTK {kind or 'object of no type'}, not an UnstructuredGrid;"
+                " convert it to one with cells that fill space"
+            )
         layout = self.layout
         layout.byte_order = attributes.get("byte_order", layout.byte_order)
         layout.header_type = attributes.get("header_type", layout.header_type)
         layout.compressor = attributes.get("compressor", "")
         if layout.byte_order not in ("LittleEndian", "BigEndian"):
-            raise InputError(f"{self.path}: byte_order {layout.byte_order!r} is unknown; LittleEndian or BigEndian")
+            raise InputError(
+                f"{self.path}: byte_order {layout.byte_order!r} is unknown; LittleEndian or BigEndian"
+            )
         if layout.header_type not in ("UInt32", "UInt64"):
             raise InputError(f"{self.path}: header_type {layout.header_type!r} is unknown; UInt32 or UInt64")
 
@@ -151,8 +158,12 @@ def scan(path: str, data: mmap) -> Layout:
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
         if not position:
-            raise InputError(f"{path}: is not XML, so not a .vtu; check that it is what its suffix says") from error
-        raise InputError(f"{path}: its XML is broken near byte {position:,} ({reason}); copy it again") from error
+            raise InputError(
+                f"{path}: is not XML, so not a .vtu; check that it is what its suffix says"
+            ) from error
+        raise InputError(
+            f"{path}: its XML is broken near byte {position:,} ({reason}); copy it again"
+        ) from error
     return seen.layout
 
 
@@ -170,7 +181,9 @@ def _tags(path: str, data: mmap) -> Iterator[tuple[int, int]]:
             continue
         match = _TAG.match(data, first)
         if match is None:
-            raise InputError(f"{path}: its XML is broken near byte {first:,} (a tag is not closed); copy it again")
+            raise InputError(
+                f"{path}: its XML is broken near byte {first:,} (a tag is not closed); copy it again"
+            )
         position = match.end()
         yield first, position
 

@@ -1,7 +1,7 @@
 """The rare VTU whose XML the tag scan does not follow, through meshio.
 
-meshio parses any XML (UTF-16, CDATA, entities, comments inside the numbers), but keeps the cells of the last piece
-only: a file of several pieces is refused rather than read in part.
+meshio parses any XML (UTF-16, CDATA, entities, comments inside the numbers), but keeps the cells of the last
+piece only: a file of several pieces is refused rather than read in part.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ from isocore.readers.vtu_source import PieceData
 
 #: meshio's names; the corners come first and in VTK's order in all of them. What is not here is refused.
 TYPES = {
-    "tetra": 10, "hexahedron": 12, "wedge": 13, "pyramid": 14, "tetra10": 24, "hexahedron20": 25, "wedge15": 26,
-    "pyramid13": 27, "hexahedron27": 29, "wedge12": 31, "wedge18": 32, "hexahedron24": 33, "vertex": 1, "line": 3,
-    "triangle": 5, "polygon": 7, "pixel": 8, "quad": 9, "line3": 21, "triangle6": 22, "quad8": 23, "quad9": 28,
+    "tetra": 10, "hexahedron": 12, "wedge": 13, "pyramid": 14, "tetra10": 24, "hexahedron20": 25,
+    "wedge15": 26, "pyramid13": 27, "hexahedron27": 29, "wedge12": 31, "wedge18": 32, "hexahedron24": 33,
+    "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "pixel": 8, "quad": 9, "line3": 21, "triangle6": 22,
+    "quad8": 23, "quad9": 28,
 }  # fmt: skip
 
 
@@ -34,7 +35,9 @@ class MeshioSource:
     def __init__(self, path: str, reason: str) -> None:
         pieces = _pieces(path)
         if pieces > 1:
-            raise InputError(f"{path}: has unusual XML ({reason}) and {pieces} pieces; write it again with VTK")
+            raise InputError(
+                f"{path}: has unusual XML ({reason}) and {pieces} pieces; write it again with VTK"
+            )
         import meshio
 
         self.path = path
@@ -51,10 +54,16 @@ class MeshioSource:
         mesh = self.mesh
         unknown = [block.type for block in mesh.cells if block.type not in TYPES]
         if unknown:
-            raise InputError(f"{self.path}: holds cells of type {unknown[0]!r}, which cannot be contoured; split them"
-                             " into tetrahedra first")
+            raise InputError(
+                f"{self.path}: holds cells of type {unknown[0]!r}, which cannot be contoured; split them"
+                " into tetrahedra first"
+            )
         blocks = [(TYPES[block.type], np.asarray(block.data)) for block in mesh.cells]
-        values = mesh.point_data[field.name] if field.of == "points" else np.concatenate(mesh.cell_data[field.name])
+        values = (
+            mesh.point_data[field.name]
+            if field.of == "points"
+            else np.concatenate(mesh.cell_data[field.name])
+        )
         sizes = np.concatenate([np.full(len(data), data.shape[1]) for _, data in blocks])
         yield PieceData(
             points=np.asarray(mesh.points),

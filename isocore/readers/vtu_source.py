@@ -58,8 +58,10 @@ class MappedSource:
             values = self._tag(piece, "PointData" if field.of == "points" else "CellData", field.name)
             tuples = piece.points if field.of == "points" else piece.cells
             if values.components != field.components:
-                raise InputError(f"{self.path}: field {field.name!r} has {field.components} components in one piece"
-                                 f" and {values.components} in another; write it again")
+                raise InputError(
+                    f"{self.path}: field {field.name!r} has {field.components} components in one piece"
+                    f" and {values.components} in another; write it again"
+                )
             yield PieceData(
                 points=read(self._tag(piece, "Points", None), 3 * piece.points).reshape(-1, 3),
                 types=read(self._tag(piece, "Cells", "types"), piece.cells),
@@ -75,4 +77,6 @@ class MappedSource:
                 return tag
         number = self.full.index(piece) + 1
         wanted = f"array {name!r}" if name else "coordinates"
-        raise InputError(f"{self.path}: has no {wanted} in <{section}> of piece {number}; write the file again")
+        raise InputError(
+            f"{self.path}: has no {wanted} in <{section}> of piece {number}; write the file again"
+        )
