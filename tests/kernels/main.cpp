@@ -2,12 +2,12 @@
 #include <cstdio>
 
 void test_crossing();
-void test_loops();
+void test_cell_loops();
 void test_marching_cubes();
 
 int main() {
     test_crossing();
-    test_loops();
+    test_cell_loops();
     test_marching_cubes();
     std::puts("kernels: all checks hold");
 }

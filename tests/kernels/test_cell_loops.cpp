@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "check.hpp"
-#include "marching_cubes/loops.hpp"
+#include "common/cell_loops.hpp"
 
 namespace {
 
 using namespace isocore;
-using namespace isocore::marching_cubes;
+using namespace isocore::cell_loops;
 using Directed = std::pair<int, int>;
 
 // Calls visit(corners, joined faces, case) for all 656.
@@ -127,7 +127,7 @@ void a_single_inside_corner_is_cut_off_with_its_outside_in_front() {
 
 }  // namespace
 
-void test_loops() {
+void test_cell_loops() {
     every_crossed_edge_is_used_and_no_other();
     a_case_is_a_manifold_with_the_counted_loops();
     a_face_is_drawn_by_its_own_corners_and_the_other_way_round_from_across();
