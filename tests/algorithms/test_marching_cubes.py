@@ -17,7 +17,10 @@ from isocore.measure import measure
 from shapes import integer_noise, volume_of
 
 Samples = npt.NDArray[np.int8]
-volumes = arrays(np.int8, st.tuples(*[st.integers(2, 5)] * 3), elements=st.sampled_from([-4, -2, 0, 2, 4]), fill=st.nothing())
+shapes = st.tuples(*[st.integers(2, 5)] * 3)
+volumes = arrays(np.int8, shapes, elements=st.sampled_from([-4, -2, 0, 2, 4]), fill=st.nothing())
+#: Samples that differ by powers of two, so that crossings and their mirror images are exact.
+exact_volumes = arrays(np.int8, shapes, elements=st.sampled_from([-5, -1, 3]), fill=st.nothing())
 
 
 def vertices_of(samples: npt.ArrayLike, isovalue: float) -> npt.NDArray[np.float32]:
@@ -59,7 +62,7 @@ def test_permuting_the_axes_permutes_the_vertices(samples: Samples, order: list[
     assert as_rows(permuted) == as_rows(vertices_of(samples, 1.0)[:, order])
 
 
-@given(samples=volumes, axis=st.integers(0, 2))
+@given(samples=exact_volumes, axis=st.integers(0, 2))
 @settings(max_examples=40, deadline=None)
 def test_mirroring_the_volume_mirrors_the_vertices(samples: Samples, axis: int) -> None:
     """Exact, because steps of the samples are powers of two."""
