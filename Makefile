@@ -47,7 +47,7 @@ samples: $(READY)  ## make sample_volumes/ again
 	cd sample_volumes && sha256sum -b *.nii.gz *.nrrd *.raw *.json *.nhdr *.raw.gz *.vtu >SHA256SUMS
 
 golden: $(READY)  ## rewrite the golden counts; the commit says why
-	$(BIN)/python tests/golden/rewrite.py
+	$(BIN)/python tests/golden/counts.py
 
 dist: $(READY)  ## wheel and sdist, with a look inside
 	$(BIN)/python -m pip install -q build && $(BIN)/python -m build -q
