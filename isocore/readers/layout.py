@@ -1,4 +1,4 @@
-"""Where one volume's samples lie among a file's bytes, and how they get into memory.
+"""Where samples lie, in the file and in the world, and how they get into memory.
 
 A file's axes are counted fastest first, as ours are, so samples go straight to their place: nothing is
 transposed. At most one axis tells volumes (times, components) apart: the last, the first, or one between.
@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from isocore.errors import FieldError, OptionError
 from isocore.readers.packed import Source
+from isocore.volume import Space
 
 #: Interleaved samples are taken apart in pieces of about this many bytes.
 _PIECE = 1 << 20
@@ -50,6 +51,16 @@ class Layout:
         return self.volume_bytes * self.volumes
 
 
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """affine: (4, 4) float64, index to world, in `unit`: "mm", or "" where the file does not say."""
+
+    affine: npt.NDArray[np.float64]
+    space: Space
+    unit: str
+    warnings: tuple[str, ...] = ()
+
+
 def spatial(sizes: tuple[int, ...]) -> tuple[int, int, int]:
     """The sizes of three axes, or why they cannot be contoured."""
     if len(sizes) == 3 and min(sizes) >= 2:
@@ -62,7 +73,9 @@ def chosen(layout: Layout, volume: int | None) -> int:
     """The volume asked for, where the file has it."""
     held = layout.volumes
     if volume is None and held > 1:
-        raise OptionError(f"holds {held} volumes (0 to {held - 1}); choose one with --volume")
+        raise OptionError(
+            f"holds {held} volumes (0 to {held - 1}); choose one with --volume, or --volume all"
+        )
     if volume is not None and not 0 <= volume < held:
         there = f"volumes 0 to {held - 1}" if held > 1 else "one volume, 0"
         raise OptionError(f"has no volume {volume}; it holds {there}")

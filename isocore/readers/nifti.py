@@ -15,17 +15,19 @@ from isocore.errors import InputError
 from isocore.readers.layout import Layout, chosen, load, spatial
 from isocore.readers.nifti_header import DATATYPES, UNCONTOURABLE, Order, parsed, placement, scaling, sizes_of
 from isocore.readers.options import ReadOptions
-from isocore.readers.packed import Packed, packing_of
+from isocore.readers.packed import Packed, packing_by_suffix, packing_of
 from isocore.readers.sample_types import contourable, from_float128, refuse
 from isocore.volume import Volume
 
 
 def read_nifti(path: Path, options: ReadOptions) -> Volume:
     """The volume of a NIfTI or Analyze file; `path` is its .nii, its .hdr or its .img."""
-    header, order, samples_path, start = _opened(path)
+    header_path, image_path = _pair(path)
+    header, order = _header(header_path)
     layout = _layout(header, order)
     volume = chosen(layout, options.volume)
-    with Packed(samples_path, packing=packing_of(samples_path)) as source:
+    start = _first_byte(header, image_path)
+    with _samples(header_path, image_path) as source:
         source.promise(start + layout.total_bytes, kept_bytes=layout.volume_bytes)
         source.skip(start)
         samples: Any = load(source, layout, volume)
@@ -46,29 +48,33 @@ def read_nifti(path: Path, options: ReadOptions) -> Volume:
 
 def count_nifti(path: Path, options: ReadOptions) -> int:
     """How many volumes the file holds."""
-    header, order, _, _ = _opened(path)
-    return _layout(header, order).volumes
+    return _layout(*_header(_pair(path)[0])).volumes
 
 
-def _opened(path: Path) -> tuple[Any, Order, Path, int]:
-    """The header, its byte order, the file with the samples and where they start there."""
-    header_path, image_path = _pair(path)
-    with Packed(header_path, packing=packing_of(header_path)) as source:
-        header, order = parsed(source.read(540))
-    magic = header["magic"].tobytes()[:3]
+def _header(path: Path) -> tuple[Any, Order]:
+    with Packed(path, packing=packing_of(path)) as source:
+        return parsed(source.read(540))
+
+
+def _first_byte(header: Any, image_path: Path | None) -> int:
+    """Where the samples start in the file that holds them: the image, or the header's own (None)."""
     start = float(header["vox_offset"])
-    if magic in (b"n+1", b"n+2"):
-        smallest = header.itemsize + 4
-        if start and not (start >= smallest and math.isfinite(start)):
-            raise InputError(f"header puts the samples at byte {start:g}, inside itself; it is damaged")
-        return header, order, header_path, int(start) or smallest
+    smallest = 0 if image_path else header.itemsize + 4
     if image_path is None:
-        raise InputError("is no NIfTI file (its header has no magic n+1 or n+2); check its suffix")
-    if not (math.isfinite(start) and start >= 0):
-        raise InputError(f"header puts the samples at byte {start:g}; it is damaged")
+        if header["magic"].tobytes()[:3] not in (b"n+1", b"n+2"):
+            raise InputError("is no NIfTI file (its header has no magic n+1 or n+2); check its suffix")
+        start = start or smallest
+    if not (math.isfinite(start) and start >= smallest):
+        raise InputError(f"header puts the samples at byte {start:g}, inside itself; it is damaged")
+    return int(start)
+
+
+def _samples(header_path: Path, image_path: Path | None) -> Packed:
+    if image_path is None:
+        return Packed(header_path, packing=packing_of(header_path))
     if not image_path.is_file():
         raise InputError(f"its samples are missing: no {image_path.name} beside it; put it there")
-    return header, order, image_path, int(start)
+    return Packed(image_path, packing=packing_by_suffix(image_path), subject=f"{image_path.name} ")
 
 
 def _layout(header: Any, order: Order) -> Layout:

@@ -6,14 +6,13 @@ header only the fields that say something about samples or place are read.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
-from isocore.volume import Space
+from isocore.readers.layout import Placement
 
 #: Sample types by datatype code; every other code is refused, these in `UNCONTOURABLE` by name.
 DATATYPES = {
@@ -97,16 +96,6 @@ def scaling(header: Any) -> tuple[float, float]:
     if not np.isfinite(slope) or slope == 0:
         return 1.0, 0.0
     return slope, intercept if np.isfinite(intercept) and not is_analyze(header) else 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class Placement:
-    """affine: (4, 4) float64, index to world, in `unit`: "mm", or "" where the file does not say."""
-
-    affine: npt.NDArray[np.float64]
-    space: Space
-    unit: str
-    warnings: tuple[str, ...]
 
 
 def placement(header: Any) -> Placement:

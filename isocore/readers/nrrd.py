@@ -6,6 +6,7 @@ Encodings raw, gzip, bzip2, text and hex. World is what the header says: RAS, LA
 from __future__ import annotations
 
 import binascii
+import re
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,8 @@ _PACKINGS: dict[str, Packing] = {
     "bzip2": "bzip2",
     "bz2": "bzip2",
 }
+#: data file: a name with one printf place for a number, first, last, step, and the axes in each.
+_NUMBERED = re.compile(r"[^%\s]*%0?\d?[du][^%\s]*(\s+-?\d+){3,4}")
 
 
 def read_nrrd(path: Path, options: ReadOptions) -> Volume:
@@ -63,11 +66,8 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     words = named.split()
     if named.startswith("LIST"):
         names = list(head.files)
-    elif len(words) in (4, 5) and "%" in words[0]:
-        first, last, step = (int(word) for word in words[1:4])
-        if not step or (last - first) // step >= layout.total_bytes:
-            raise InputError(f"header field data file numbers no files: {named[:60]}")
-        names = [words[0] % number for number in range(first, last + (1 if step > 0 else -1), step)]
+    elif _NUMBERED.fullmatch(named):
+        names = _numbered(words, layout)
     else:
         names = [named]
     files = [path.parent / name for name in names]
@@ -83,6 +83,15 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     return [(file, 0) for file in files]
 
 
+def _numbered(words: list[str], layout: Layout) -> list[str]:
+    """The names that a pattern, its first and last number and their step stand for."""
+    first, last, step = (int(word) for word in words[1:4])
+    numbers = range(first, last + (1 if step > 0 else -1), step or 1)
+    if not 0 < len(numbers) <= layout.total_bytes:
+        raise InputError(f"header numbers {len(numbers)} data files from {first} to {last}; mend it")
+    return [words[0] % number for number in numbers]
+
+
 def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layout, *, parts: int) -> Source:
     """One data file, ready to hand out its share of the samples' bytes."""
     share_bytes = layout.total_bytes // parts
@@ -93,7 +102,8 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
         return Decoded(_from_text(file, start + skipped, encoding, layout), share_bytes)
     if encoding not in _PACKINGS:
         raise InputError(f"header names the encoding {encoding}, which cannot be read; use raw or gzip")
-    source = opened.enter_context(Packed(file, packing=_PACKINGS[encoding], start=start))
+    subject = f"{file.name} " if "datafile" in head.fields else ""
+    source = opened.enter_context(Packed(file, packing=_PACKINGS[encoding], start=start, subject=subject))
     if skipped < 0:
         skipped = source.content_bytes() - share_bytes
     source.promise(max(skipped, 0) + share_bytes, kept_bytes=layout.volume_bytes)
@@ -103,7 +113,9 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
 
 def _skips(head: Head) -> tuple[int, int]:
     """Lines to skip before unpacking, and bytes to skip after it; -1: the samples are the last bytes."""
-    lines, skipped = (int(head.fields.get(name) or "0") for name in ("lineskip", "byteskip"))
+    lines, skipped = (
+        sum(head.integers(name)) if name in head.fields else 0 for name in ("lineskip", "byteskip")
+    )
     if lines < 0 or skipped < -1:
         raise InputError(f"header skips {lines} lines and {skipped} bytes, which is not possible; mend it")
     return lines, skipped

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from isocore.errors import FieldError, InputError
-from isocore.readers.layout import Layout, spatial
+from isocore.readers.layout import Layout, Placement, spatial
 from isocore.readers.nrrd_header import Head
 from isocore.readers.sample_types import refuse
 from isocore.volume import Space
@@ -72,7 +71,7 @@ class Axes:
 def axes_of(head: Head) -> Axes:
     """Which axes lie in space, which one tells volumes apart, and what is stored."""
     sizes = head.integers("sizes")
-    if len(sizes) != head.integers("dimension")[0] or min(sizes) < 0:
+    if (len(sizes),) != head.integers("dimension") or min(sizes, default=-1) < 0:
         raise InputError(
             f"header gives {head.need('dimension')} axes the sizes {head.need('sizes')}; it is damaged"
         )
@@ -117,15 +116,6 @@ def _sample_type(head: Head) -> np.dtype[Any]:
             f"header gives no byte order for its {name} samples; add endian: little or endian: big"
         )
     return stored
-
-
-@dataclass(frozen=True, slots=True)
-class Placement:
-    """affine: (4, 4) float64, index to world, in `unit`: "mm", or "" where the file does not say."""
-
-    affine: npt.NDArray[np.float64]
-    space: Space
-    unit: str
 
 
 def placement(head: Head, axes: Axes) -> Placement:

@@ -23,8 +23,13 @@ _CHUNK = 1 << 18
 _DEFLATE_LIMIT = 1032
 
 
+def packing_by_suffix(path: Path) -> Packing:
+    """How a file of bare samples is packed: its first bytes may be anything."""
+    return "gzip" if path.name.lower().endswith(".gz") else "none"
+
+
 def packing_of(path: Path) -> Packing:
-    """How `path` is packed, by its first bytes: suffixes lie."""
+    """How a file with a header is packed, by its first bytes: suffixes lie."""
     with path.open("rb") as file:
         magic = file.read(3)
     if magic[:2] == b"\x1f\x8b":
@@ -45,7 +50,17 @@ class Source(Protocol):
 class Packed:
     """The content of `path` from byte `start` on, unpacked while it is read, forwards only."""
 
-    def __init__(self, path: Path, *, packing: Packing, start: int = 0) -> None:
+    def __init__(
+        self,
+        path: Path,
+        *,
+        packing: Packing,
+        start: int = 0,
+        subject: str = "",
+        advice: str = "copy it again",
+    ) -> None:
+        """subject, advice: how a message about missing bytes begins and ends."""
+        self._subject, self._advice = subject, advice
         self._path, self._packing, self._start = path, packing, start
         self._promised = 0
         self._file = path.open("rb", buffering=0)
@@ -66,10 +81,8 @@ class Packed:
         if self._packing == "none" and file_bytes < content_bytes:
             raise self._ends_early(file_bytes)
         if self._packing == "gzip" and content_bytes > file_bytes * _DEFLATE_LIMIT:
-            raise InputError(
-                f"header promises {content_bytes:,} bytes, but {file_bytes:,} bytes of gzip hold at most "
-                f"{file_bytes * _DEFLATE_LIMIT:,}; copy it again"
-            )
+            most = f"{file_bytes:,} bytes of gzip hold at most {file_bytes * _DEFLATE_LIMIT:,}"
+            raise InputError(f"{self._subject}should hold {content_bytes:,} bytes, but {most}; {self._advice}")
         memory_bytes = _memory_bytes()
         if kept_bytes > memory_bytes:
             raise InputError(f"needs {kept_bytes:,} bytes of memory of {memory_bytes:,}; crop the data")
@@ -116,7 +129,9 @@ class Packed:
         return sum(map(len, self._whole()))
 
     def _ends_early(self, held_bytes: int) -> InputError:
-        return InputError(f"ends early ({held_bytes:,} of {self._promised:,} bytes); copy it again")
+        return InputError(
+            f"{self._subject}ends early ({held_bytes:,} of {self._promised:,} bytes); {self._advice}"
+        )
 
     def _whole(self) -> Iterator[bytes]:
         """All of the content that can be had, from its first byte, however damaged its end."""

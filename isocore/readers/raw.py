@@ -14,10 +14,11 @@ import numpy as np
 from isocore.errors import InputError, OptionError
 from isocore.readers.layout import Layout, chosen, load, spatial
 from isocore.readers.options import ReadOptions
-from isocore.readers.packed import Packed, packing_of
+from isocore.readers.packed import Packed, packing_by_suffix
 from isocore.readers.sample_types import contourable
 from isocore.volume import Volume
 
+_ADVICE = "check --shape, --dtype and --offset"
 _SIDECAR_KEYS = ("shape", "dtype", "spacing", "origin", "byte_order", "offset")
 _TYPE_NAMES = re.compile(r"u?int(8|16|32|64)|float(16|32|64)")
 _NUMPY_NAMES = re.compile(r"(?P<order>[<>=|]?)(?P<kind>[ui][1248]|f[248])")
@@ -49,13 +50,13 @@ def read_raw(path: Path, options: ReadOptions) -> Volume:
     told = _described(path, options)
     volume = chosen(told.layout, options.volume)
     warnings: tuple[str, ...] = ()
-    with Packed(path, packing=packing_of(path)) as source:
+    with Packed(path, packing=packing_by_suffix(path), advice=_ADVICE) as source:
         source.promise(told.offset + told.layout.total_bytes, kept_bytes=told.layout.volume_bytes)
         source.skip(told.offset)
         samples: Any = load(source, told.layout, volume)
         surplus = source.rest() - told.layout.volume_bytes * (told.layout.volumes - 1 - volume)
     if surplus > 0:
-        warnings = (f"has {surplus:,} bytes more than it should; check --shape, --dtype and --offset",)
+        warnings = (f"has {surplus:,} bytes more than it should; {_ADVICE}",)
     samples, lost = contourable(samples)
     affine = np.diag([*told.spacing, 1.0])
     affine[:3, 3] = told.origin

@@ -61,4 +61,4 @@ def from_float128(
 
 def refuse(name: str, instead: str) -> FieldError:
     """An error for samples that are not numbers on a line."""
-    return FieldError(f"samples are {name}, which has no isosurface; {instead}")
+    return FieldError(f"samples are {name}, which have no isosurface; {instead}")
