@@ -53,7 +53,7 @@ class Head:
         """A field's vectors, (1,0,0) none (0,0,1); None without the field."""
         if name not in self.fields:
             return None
-        words = re.findall(r"\([^()]*\)|[^\s()]+", self.fields[name])
+        words = re.findall(r"\([^()]*\)|\S+", self.fields[name])
         try:
             return [None if word == "none" else _vector(word) for word in words]
         except ValueError:
@@ -72,7 +72,9 @@ class Head:
 
 
 def _vector(word: str) -> list[float]:
-    return [float(number) for number in word.strip("()").split(",")]
+    if not (word.startswith("(") and word.endswith(")")):
+        raise ValueError(word)
+    return [float(number) for number in word[1:-1].split(",")]
 
 
 def parsed(path: Path) -> Head:

@@ -81,8 +81,8 @@ class Packed:
         if self._packing == "none" and file_bytes < content_bytes:
             raise self._ends_early(file_bytes)
         if self._packing == "gzip" and content_bytes > file_bytes * _DEFLATE_LIMIT:
-            most = f"{file_bytes:,} bytes of gzip hold at most {file_bytes * _DEFLATE_LIMIT:,}"
-            raise InputError(f"{self._subject}should hold {content_bytes:,} bytes, but {most}; {self._advice}")
+            most = f"{file_bytes:,} of gzip hold at most {file_bytes * _DEFLATE_LIMIT:,}"
+            raise InputError(f"{self._subject}should hold {content_bytes:,} bytes; {most}; {self._advice}")
         memory_bytes = _memory_bytes()
         if kept_bytes > memory_bytes:
             raise InputError(f"needs {kept_bytes:,} bytes of memory of {memory_bytes:,}; crop the data")
