@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -55,9 +54,9 @@ def _header(samples: npt.NDArray[Any], affine: npt.NDArray[np.float64]) -> nib.N
     header = nib.Nifti1Header(endianness=">" if samples.dtype.byteorder == ">" else "<")
     header.set_data_dtype(samples.dtype)
     header.set_xyzt_units("mm")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        header.set_sform(affine, 1)
+    header.set_data_shape(samples.shape)
+    header.set_zooms([*nib.affines.voxel_sizes(affine), 1.0][: samples.ndim])
+    header.set_sform(affine, 1)
     return header
 
 

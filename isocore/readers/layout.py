@@ -72,6 +72,10 @@ def spatial(sizes: tuple[int, ...]) -> tuple[int, int, int]:
 def chosen(layout: Layout, volume: int | None) -> int:
     """The volume asked for, where the file has it."""
     held = layout.volumes
+    if held == 0:
+        raise FieldError(
+            "holds 0 volumes: an axis beyond space has no entries, so there is nothing to contour"
+        )
     if volume is None and held > 1:
         raise OptionError(
             f"holds {held} volumes (0 to {held - 1}); choose one with --volume, or --volume all"

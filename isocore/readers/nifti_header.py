@@ -131,7 +131,7 @@ def _qform(header: Any, spacing: npt.NDArray[np.float64]) -> npt.NDArray[np.floa
         return None
     affine = np.eye(4)
     mirror = -1.0 if header["pixdim"][0] < 0 else 1.0
-    affine[:3, :3] = _rotation(header["quatern"].astype(np.float64)) * (spacing * [1.0, 1.0, mirror])
+    affine[:3, :3] = _rotation(header["quatern"]) * (spacing * [1.0, 1.0, mirror])
     affine[:3, 3] = header["qoffset"]
     return affine
 
@@ -143,10 +143,16 @@ def _spacing(header: Any) -> tuple[npt.NDArray[np.float64], bool]:
     return spacing, bool(missing.any())
 
 
-def _rotation(bcd: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """The rotation of the unit quaternion with the parts b, c, d; too long ones are scaled down."""
-    b, c, d = bcd / max(1.0, float(np.sqrt((bcd**2).sum())))
-    a = np.sqrt(max(0.0, 1.0 - (b * b + c * c + d * d)))
+def _rotation(bcd: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """The rotation of the unit quaternion with the parts b, c, d, rounded as the header stores them.
+
+    A half turn has a = 0; what rounding leaves of 1 - b^2 - c^2 - d^2 would tilt it by its square root.
+    """
+    squares = float((bcd.astype(np.float64) ** 2).sum())
+    rest = 1.0 - squares
+    half_turn = rest < 3 * np.finfo(bcd.dtype).eps
+    a = 0.0 if half_turn else np.sqrt(rest)
+    b, c, d = bcd.astype(np.float64) / (np.sqrt(squares) if half_turn else 1.0)
     return np.array(
         [
             [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],

@@ -74,7 +74,7 @@ def _described(path: Path, options: ReadOptions) -> _Description:
     if missing:
         raise OptionError(f"needs {' and '.join(missing)}; a raw file cannot tell its own")
     assert told.shape is not None and told.dtype is not None
-    if len(told.shape) not in (3, 4) or min(told.shape) < 0:
+    if len(told.shape) not in (3, 4) or min(told.shape) < 0 or 0 in told.shape[3:]:
         raise OptionError(f"--shape is {_listed(told.shape)}; it takes X,Y,Z or X,Y,Z,volumes")
     spacing, origin = told.spacing or (1.0, 1.0, 1.0), told.origin or (0.0, 0.0, 0.0)
     if len(spacing) != 3 or not all(math.isfinite(step) and step > 0 for step in spacing):

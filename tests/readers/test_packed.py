@@ -1,0 +1,172 @@
+"""The bytes of packed files: members, checksums, missing bytes, promises nobody can keep."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scans import patched, ramp, save
+
+from isocore.errors import InputError
+from isocore.readers import packed, read
+from isocore.readers.joined import Decoded, Joined
+from isocore.readers.packed import Packed, Packing, packing_of
+from isocore.volume import Volume
+
+CONTENT = bytes(range(256)) * 5000
+PACKERS = {"none": bytes, "gzip": gzip.compress, "bzip2": bz2.compress}
+
+
+def _filled(path: Path, packing: Packing, size: int = len(CONTENT)) -> bytes:
+    target = bytearray(size)
+    with Packed(path, packing=packing) as source:
+        source.promise(size, kept_bytes=size)
+        source.fill(memoryview(target))
+        source.finish()
+    return bytes(target)
+
+
+@pytest.mark.parametrize("packing", PACKERS)
+def test_content_is_read_skipped_and_counted_alike(tmp_path: Path, packing: Packing) -> None:
+    """Plain and packed files are one kind of source."""
+    path = tmp_path / "content"
+    path.write_bytes(b"head" + PACKERS[packing](CONTENT))
+    target = bytearray(300_000)
+    with Packed(path, packing=packing, start=4) as source:
+        assert source.read(3) == CONTENT[:3]
+        source.skip(700_000)
+        source.fill(memoryview(target))
+        assert target == CONTENT[700_003:1_000_003]
+        assert source.rest() == len(CONTENT) - 1_000_003
+        assert source.content_bytes() == len(CONTENT)
+
+
+@pytest.mark.parametrize("packing", ["gzip", "bzip2"])
+def test_several_members_are_one_content(tmp_path: Path, packing: Packing) -> None:
+    """As written by parallel packers, and by `cat a.gz b.gz`."""
+    path = tmp_path / "content"
+    path.write_bytes(
+        b"".join(PACKERS[packing](CONTENT[at : at + 100_000]) for at in range(0, len(CONTENT), 100_000))
+    )
+    assert _filled(path, packing) == CONTENT
+
+
+@pytest.mark.parametrize("packing", PACKERS)
+def test_missing_bytes_are_counted(tmp_path: Path, packing: Packing) -> None:
+    """Those that are there and those that should be, also where the file ends amid a packed block."""
+    path = tmp_path / "content"
+    noise = np.random.default_rng(1).bytes(400_000)
+    path.write_bytes(PACKERS[packing](noise)[:300_000])
+    with pytest.raises(
+        InputError, match=r"^ends early \([\d,]+ of 400,000 bytes\); copy it again$"
+    ) as caught:
+        _filled(path, packing, len(noise))
+    held = int(str(caught.value).split("(")[1].split(" ")[0].replace(",", ""))
+    if packing == "bzip2":
+        assert held == 0, "a block is unpacked whole or not at all"
+    else:
+        assert 299_000 < held <= 300_000
+
+
+def test_a_complete_but_short_content_is_counted_too(tmp_path: Path) -> None:
+    """The stream ends well, only too soon."""
+    path = tmp_path / "content"
+    path.write_bytes(gzip.compress(CONTENT))
+    with pytest.raises(InputError, match=r"ends early \(1,280,000 of 1,280,001 bytes\)"):
+        _filled(path, "gzip", len(CONTENT) + 1)
+
+
+def test_a_wrong_checksum_is_damage(tmp_path: Path) -> None:
+    """All bytes are there, but they are not those that were packed."""
+    path = save(tmp_path / "scan.nii.gz", ramp())
+    content = bytearray(path.read_bytes())
+    content[-6] ^= 1
+    path.write_bytes(bytes(content))
+    with pytest.raises(InputError, match="compressed data is damaged"):
+        read(path)
+
+
+def test_zeros_after_the_last_member_are_padding(tmp_path: Path) -> None:
+    """Tapes and some archives fill up their blocks."""
+    path = save(tmp_path / "scan.nii.gz", ramp())
+    path.write_bytes(path.read_bytes() + bytes(512))
+    assert isinstance(read(path), Volume)
+
+
+def test_gzip_is_inflated_without_isal_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """zlib is slower and reads the same."""
+    path = tmp_path / "content"
+    path.write_bytes(gzip.compress(CONTENT[:500_000]) + gzip.compress(CONTENT[500_000:]))
+    monkeypatch.setitem(sys.modules, "isal", None)
+    assert _filled(path, "gzip") == CONTENT
+    path.write_bytes(path.read_bytes()[:-300])
+    with pytest.raises(InputError, match="ends early"):
+        _filled(path, "gzip")
+
+
+def test_gzip_cannot_hold_what_it_cannot_hold(tmp_path: Path) -> None:
+    """Refused by the size of the file alone, before anything is inflated."""
+    path = tmp_path / "content"
+    path.write_bytes(gzip.compress(bytes(1000)))
+    with pytest.raises(InputError, match=r"should hold 2,000,000,000,000 bytes; \d+ of gzip hold at most"):
+        _filled_promise(path, 2 * 10**12)
+
+
+def test_zeros_packed_as_densely_as_can_be_are_no_lie(tmp_path: Path) -> None:
+    """The bound on gzip is above what gzip reaches."""
+    path = tmp_path / "content"
+    path.write_bytes(gzip.compress(bytes(20_000_000), 9))
+    assert 20_000_000 / path.stat().st_size > 1000
+    _filled_promise(path, 20_000_000)
+
+
+def test_more_than_the_machine_has_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """bzip2 has no bound worth a test, so that memory is the bound."""
+    monkeypatch.setattr(packed, "_memory_bytes", lambda: 10**9)
+    path = tmp_path / "content"
+    path.write_bytes(bz2.compress(CONTENT))
+    with (
+        pytest.raises(
+            InputError, match="needs 2,000,000,000,000 bytes of memory of 1,000,000,000; crop the data"
+        ),
+        Packed(path, packing="bzip2") as source,
+    ):
+        source.promise(2 * 10**12, kept_bytes=2 * 10**12)
+
+
+def _filled_promise(path: Path, content_bytes: int) -> None:
+    with Packed(path, packing="gzip") as source:
+        source.promise(content_bytes, kept_bytes=1)
+
+
+def test_packing_is_told_by_the_first_bytes(tmp_path: Path) -> None:
+    """A NIfTI file may be packed without saying so in its name."""
+    path = save(tmp_path / "scan.nii", ramp())
+    for packing, pack in PACKERS.items():
+        (tmp_path / f"{packing}.nii").write_bytes(pack(path.read_bytes()))
+        assert packing_of(tmp_path / f"{packing}.nii") == packing
+        field = read(tmp_path / f"{packing}.nii")
+        assert isinstance(field, Volume) and np.array_equal(field.samples, ramp())
+
+
+def test_an_image_that_begins_like_gzip_is_none(tmp_path: Path) -> None:
+    """Bare samples may have any value."""
+    path = save(tmp_path / "scan.hdr", ramp())
+    patched(tmp_path / "scan.img", 0, b"\x1f\x8b")
+    field = read(path)
+    assert isinstance(field, Volume) and field.samples[0, 0, 0] == 0x8B1F - 0x10000
+
+
+def test_joined_parts_read_as_one() -> None:
+    """Over every seam, filling and skipping."""
+    parts = [Decoded(CONTENT[at : at + 10], 10) for at in range(0, 50, 10)]
+    source, target = Joined(parts, 10), bytearray(23)
+    source.skip(13)
+    source.fill(memoryview(target))
+    assert bytes(target) == CONTENT[13:36]
+    source.fill(memoryview(bytearray(14)))
+    assert source.rest() == 0
