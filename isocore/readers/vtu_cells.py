@@ -140,8 +140,8 @@ def _starts(path: str, offsets: npt.NDArray[Any], connectivity: npt.NDArray[Any]
         )
     if starts[-1] > len(connectivity):
         raise InputError(
-            f"{path}: its cells need {int(starts[-1]):,} corners, its connectivity holds"
-            f" {len(connectivity):,}; copy the file again"
+            f"{path}: needs {int(starts[-1]):,} corners, its connectivity holds {len(connectivity):,};"
+            " copy the file again"
         )
     return starts
 

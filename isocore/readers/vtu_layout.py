@@ -150,7 +150,8 @@ def scan(path: str, data: mmap) -> Layout:
             if _TEXT.search(data, position, first) is not None:
                 seen.text(position, first)
             position = end
-            parser.Parse(data[first:end])
+            if data[first : first + 4] != b"<!--":
+                parser.Parse(data[first:end])
             if seen.appended is not None:
                 seen.layout.appended = (seen.appended, _behind_underscore(path, data, end))
                 return seen.layout
@@ -168,7 +169,7 @@ def scan(path: str, data: mmap) -> Layout:
 
 
 def _tags(path: str, data: mmap) -> Iterator[tuple[int, int]]:
-    """(first, end) of every tag in turn; comments are passed over."""
+    """(first, end) of every tag and comment in turn."""
     position = 0
     while (first := data.find(b"<", position)) >= 0:
         head = data[first : first + 9]
@@ -178,13 +179,11 @@ def _tags(path: str, data: mmap) -> Iterator[tuple[int, int]]:
             position = data.find(b"-->", first) + 3
             if position < 3:
                 raise InputError(f"{path}: ends inside a comment; copy it again")
-            continue
-        match = _TAG.match(data, first)
-        if match is None:
-            raise InputError(
-                f"{path}: its XML is broken near byte {first:,} (a tag is not closed); copy it again"
-            )
-        position = match.end()
+        else:
+            match = _TAG.match(data, first)
+            if match is None:
+                raise InputError(f"{path}: is broken near byte {first:,}: a tag is not closed; copy it again")
+            position = match.end()
         yield first, position
 
 

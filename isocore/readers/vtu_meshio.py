@@ -20,7 +20,7 @@ from isocore.errors import InputError
 from isocore.readers.vtu_fields import FieldInfo
 from isocore.readers.vtu_source import PieceData
 
-#: meshio's names; the corners come first and in VTK's order in all of them. What is not here is refused.
+#: meshio's names; corners come first and as in VTK (wedges mirrored). What is not here is refused.
 TYPES = {
     "tetra": 10, "hexahedron": 12, "wedge": 13, "pyramid": 14, "tetra10": 24, "hexahedron20": 25,
     "wedge15": 26, "pyramid13": 27, "hexahedron27": 29, "wedge12": 31, "wedge18": 32, "hexahedron24": 33,
