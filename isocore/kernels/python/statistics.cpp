@@ -1,0 +1,49 @@
+// statistics.cpp - extent and histogram for numpy: samples as a flat view, in whatever order they lie in memory.
+#include "statistics/statistics.hpp"
+
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+
+namespace isocore::python {
+namespace {
+
+template <class Sample>
+void bind_type(nb::module_& module) {
+    module.def(
+        "extent",
+        [](Vector<Sample> samples, int threads) {
+            Extent found{};
+            {
+                const nb::gil_scoped_release release;
+                found = extent(samples.data(), samples.shape(0), threads);
+            }
+            return nb::make_tuple(found.minimum, found.maximum, found.nonfinite);
+        },
+        nb::arg("samples").noconvert(), nb::arg("threads"));
+    module.def(
+        "histogram",
+        [](Vector<Sample> samples, double low, double high, std::size_t bins, int threads) {
+            Array<std::uint64_t> counts;
+            {
+                const nb::gil_scoped_release release;
+                counts = histogram(samples.data(), samples.shape(0), low, high, bins, threads);
+            }
+            return to_numpy(std::move(counts));
+        },
+        nb::arg("samples").noconvert(), nb::arg("low"), nb::arg("high"), nb::arg("bins"), nb::arg("threads"));
+}
+
+}  // namespace
+
+void bind_statistics(nb::module_& module) {
+    bind_type<std::uint8_t>(module);
+    bind_type<std::int8_t>(module);
+    bind_type<std::uint16_t>(module);
+    bind_type<std::int16_t>(module);
+    bind_type<std::uint32_t>(module);
+    bind_type<std::int32_t>(module);
+    bind_type<float>(module);
+    bind_type<double>(module);
+}
+
+}  // namespace isocore::python

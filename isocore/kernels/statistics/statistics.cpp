@@ -1,0 +1,162 @@
+// statistics.cpp - Range and histogram of the samples, at memory speed where the type allows.
+// The samples are cut into chunks; a thread counts whole chunks, and counts add up to the same in any order.
+#include "statistics/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <vector>
+
+#include "common/parallel.hpp"
+
+namespace isocore {
+namespace {
+
+constexpr std::size_t kLanes = 32;
+
+std::size_t chunk_count(std::size_t count, int threads) {
+    const std::size_t wanted = threads < 1 ? 1 : static_cast<std::size_t>(threads);
+    return std::clamp<std::size_t>(count / 65536, 1, 4 * wanted);
+}
+
+// Runs work(chunk, first, last) over all chunks.
+template <class Work>
+void over_chunks(std::size_t count, std::size_t chunks, int threads, const Work& work) {
+    parallel_for(threads, chunks, [&](std::size_t chunk) {
+        work(chunk, count / chunks * chunk, chunk + 1 == chunks ? count : count / chunks * (chunk + 1));
+    });
+}
+
+// Lanes instead of one running minimum: independent columns that a compiler turns into vectors.
+template <class Sample>
+Extent extent_of_chunk(const Sample* __restrict samples, std::size_t count) {
+    using Limits = std::numeric_limits<Sample>;
+    constexpr Sample kTop = Limits::max();
+    Sample low[kLanes];
+    Sample high[kLanes];
+    std::fill_n(low, kLanes, kTop);
+    std::fill_n(high, kLanes, Limits::lowest());
+    std::size_t finite = 0;
+    const auto take = [&](std::size_t lane, Sample sample) {
+        if constexpr (std::is_floating_point_v<Sample>) {
+            const bool usable = std::abs(sample) <= kTop;
+            low[lane] = usable && sample < low[lane] ? sample : low[lane];
+            high[lane] = usable && sample > high[lane] ? sample : high[lane];
+            finite += usable ? 1 : 0;
+        } else {
+            low[lane] = sample < low[lane] ? sample : low[lane];
+            high[lane] = sample > high[lane] ? sample : high[lane];
+        }
+    };
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, samples[i + lane]);
+    }
+    for (; i < count; ++i) take(0, samples[i]);
+    if (!std::is_floating_point_v<Sample>) finite = count;
+    if (finite == 0) return {1.0, 0.0, count};
+    return {static_cast<double>(*std::min_element(low, low + kLanes)),
+            static_cast<double>(*std::max_element(high, high + kLanes)), count - finite};
+}
+
+// Four tables in turn: a run of equal samples would otherwise wait for its own last count to be stored.
+template <class Sample>
+void count_exact(const Sample* samples, std::size_t count, std::int64_t low, std::size_t bins, std::uint64_t* out) {
+    constexpr std::size_t kTables = 4;
+    std::vector<std::uint32_t> tables(kTables * bins);
+    const auto add = [&](std::size_t table, Sample sample) {
+        const std::size_t bin = static_cast<std::size_t>(static_cast<std::int64_t>(sample) - low);
+        if (bin < bins) ++tables[table * bins + bin];
+    };
+    // A 32-bit count cannot overflow within so many samples.
+    constexpr std::size_t kRound = std::size_t{1} << 31;
+    for (std::size_t first = 0; first < count; first += kRound) {
+        const std::size_t last = std::min(count, first + kRound);
+        std::size_t i = first;
+        for (; i + kTables <= last; i += kTables) {
+            for (std::size_t table = 0; table < kTables; ++table) add(table, samples[i + table]);
+        }
+        for (; i < last; ++i) add(0, samples[i]);
+        for (std::size_t slot = 0; slot < kTables * bins; ++slot) out[slot % bins] += tables[slot];
+        std::fill(tables.begin(), tables.end(), 0U);
+    }
+}
+
+template <class Sample>
+void count_binned(const Sample* samples, std::size_t count, double low, double high, std::size_t bins,
+                  std::uint64_t* out) {
+    const double scale = high > low ? static_cast<double>(bins) / (high - low) : 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double sample = static_cast<double>(samples[i]);
+        if (!(sample >= low && sample <= high)) continue;
+        const std::size_t bin = static_cast<std::size_t>((sample - low) * scale);
+        ++out[std::min(bin, bins - 1)];
+    }
+}
+
+template <class Sample>
+bool is_exact(double low, double high, std::size_t bins) {
+    return std::is_integral_v<Sample> && bins <= 65536 && low == std::floor(low) &&
+           high - low + 1.0 == static_cast<double>(bins);
+}
+
+}  // namespace
+
+template <class Sample>
+Extent extent(const Sample* samples, std::size_t count, int threads) {
+    const std::size_t chunks = chunk_count(count, threads);
+    std::vector<Extent> parts(chunks);
+    over_chunks(count, chunks, threads, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        parts[chunk] = extent_of_chunk(samples + first, last - first);
+    });
+    Extent whole{1.0, 0.0, 0};
+    for (const Extent& part : parts) {
+        whole.nonfinite += part.nonfinite;
+        if (part.minimum > part.maximum) continue;
+        const bool first = whole.minimum > whole.maximum;
+        whole.minimum = first ? part.minimum : std::min(whole.minimum, part.minimum);
+        whole.maximum = first ? part.maximum : std::max(whole.maximum, part.maximum);
+    }
+    return whole;
+}
+
+template <class Sample>
+Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double low, double high, std::size_t bins,
+                               int threads) {
+    if (!(low <= high) || bins == 0) throw std::invalid_argument("a histogram needs low <= high and one bin or more");
+    const std::size_t chunks = chunk_count(count, threads);
+    std::vector<std::vector<std::uint64_t>> parts(chunks);
+    over_chunks(count, chunks, threads, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        parts[chunk].assign(bins, 0);
+        if constexpr (std::is_integral_v<Sample>) {
+            if (is_exact<Sample>(low, high, bins)) {
+                return count_exact(samples + first, last - first, static_cast<std::int64_t>(low), bins,
+                                   parts[chunk].data());
+            }
+        }
+        count_binned(samples + first, last - first, low, high, bins, parts[chunk].data());
+    });
+    Array<std::uint64_t> counts(bins);
+    std::fill(counts.begin(), counts.end(), 0U);
+    for (const auto& part : parts) {
+        for (std::size_t bin = 0; bin < bins; ++bin) counts[bin] += part[bin];
+    }
+    return counts;
+}
+
+#define ISOCORE_STATISTICS(Sample)                                \
+    template Extent extent(const Sample*, std::size_t, int);      \
+    template Array<std::uint64_t> histogram(const Sample*, std::size_t, double, double, std::size_t, int);
+ISOCORE_STATISTICS(std::uint8_t)
+ISOCORE_STATISTICS(std::int8_t)
+ISOCORE_STATISTICS(std::uint16_t)
+ISOCORE_STATISTICS(std::int16_t)
+ISOCORE_STATISTICS(std::uint32_t)
+ISOCORE_STATISTICS(std::int32_t)
+ISOCORE_STATISTICS(float)
+ISOCORE_STATISTICS(double)
+#undef ISOCORE_STATISTICS
+
+}  // namespace isocore
