@@ -1,1 +1,81 @@
-"""isocore: isosurfaces of volumes and meshes."""
+"""isocore: isosurfaces of volumes and meshes.
+
+    field = isocore.read("knee.nii.gz")
+    surface = isocore.extract(field, 300)
+    isocore.write(surface, "bone.ply")
+
+Names are imported when they are first used, so that `import isocore` costs nothing.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from isocore.backends import BACKENDS, Backend, Extraction, Options
+    from isocore.cell_mesh import CellMesh
+    from isocore.errors import FieldError, InputError, IsocoreError, OptionError, OutputError
+    from isocore.extract import extract
+    from isocore.measure import Measurements, measure
+    from isocore.pipeline import Job, Target, convert
+    from isocore.readers import ReadOptions, read
+    from isocore.report import BatchReport, RunReport
+    from isocore.surface import Surface
+    from isocore.volume import Volume
+    from isocore.writers import write
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "BACKENDS",
+    "Backend",
+    "BatchReport",
+    "CellMesh",
+    "Extraction",
+    "FieldError",
+    "InputError",
+    "IsocoreError",
+    "Job",
+    "Measurements",
+    "OptionError",
+    "Options",
+    "OutputError",
+    "ReadOptions",
+    "RunReport",
+    "Surface",
+    "Target",
+    "Volume",
+    "convert",
+    "extract",
+    "measure",
+    "read",
+    "write",
+]
+
+_HOMES = {
+    "backends": ("BACKENDS", "Backend", "Extraction", "Options"),
+    "cell_mesh": ("CellMesh",),
+    "errors": ("FieldError", "InputError", "IsocoreError", "OptionError", "OutputError"),
+    "extract": ("extract",),
+    "measure": ("Measurements", "measure"),
+    "pipeline": ("Job", "Target", "convert"),
+    "readers": ("ReadOptions", "read"),
+    "report": ("BatchReport", "RunReport"),
+    "surface": ("Surface",),
+    "volume": ("Volume",),
+    "writers": ("write",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for home, names in _HOMES.items():
+        if name in names:
+            value = getattr(import_module(f"isocore.{home}"), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module 'isocore' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -14,7 +14,7 @@ The conventions of the whole program stand here and nowhere else:
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -23,6 +23,9 @@ import numpy.typing as npt
 from isocore.errors import FieldError
 
 Space = Literal["ras", "lps", "las", "index", "native"]
+
+#: Signs that take RAS coordinates to each space with named axes.
+_SIGNS: dict[str, tuple[int, int, int]] = {"ras": (1, 1, 1), "lps": (-1, -1, 1), "las": (-1, 1, 1)}
 
 #: The sample types the kernels read as stored; every other type is converted by its reader.
 SAMPLE_TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
@@ -80,6 +83,19 @@ class Volume:
         """Length of one index step along each axis, in world units."""
         x, y, z = np.sqrt((self.affine[:3, :3] ** 2).sum(axis=0)).tolist()
         return x, y, z
+
+    def in_space(self, space: Space) -> Volume:
+        """This volume with its world measured in `space`; "native" leaves it as it is, "index" forgets the affine."""
+        if space in ("native", self.space):
+            return self
+        if space == "index":
+            return replace(self, affine=np.eye(4), space="index", unit="")
+        if self.space not in _SIGNS:
+            raise FieldError(f"does not say which way its axes point, so not {space} either; use --space native")
+        affine = self.affine.copy()
+        for row, (there, here) in enumerate(zip(_SIGNS[space], _SIGNS[self.space], strict=True)):
+            affine[row] *= there * here
+        return replace(self, affine=affine, space=space)
 
     @property
     def inside_is_below(self) -> bool:

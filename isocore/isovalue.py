@@ -1,0 +1,155 @@
+"""How an isovalue is chosen, and why.
+
+A choice is asked for as text: a number, ``otsu``, ``pNN`` (percentile), ``A:B:N`` (N numbers from A to B), or
+nothing (``auto``). Otsu's threshold follows N. Otsu, "A Threshold Selection Method from Gray-Level Histograms",
+IEEE Trans. Systems, Man, and Cybernetics 9(1), 1979: the cut that maximises the variance between the two classes.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.errors import FieldError, OptionError
+from isocore.histogram import Histogram
+
+AUTO = "auto"
+_MOST_OF_A_RANGE = 10_000
+_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):(?P<count>\d+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """An isovalue: how it was asked for, the number, and how that came about."""
+
+    asked: str
+    isovalue: float
+    why: str
+
+
+def parse_choices(texts: tuple[str, ...]) -> tuple[str, ...]:
+    """Check what a user asked for and spread ranges: one choice per surface, no two alike."""
+    choices: list[str] = []
+    for text in texts or (AUTO,):
+        for choice in _spread(text.strip()):
+            if choice not in choices:
+                choices.append(choice)
+    return tuple(choices)
+
+
+def _spread(text: str) -> list[str]:
+    if text.lower() in (AUTO, "otsu"):
+        return [text.lower()]
+    if re.fullmatch(r"[pP][\d.]+", text):
+        if not 0 <= _number(text, text[1:]) <= 100:
+            raise OptionError(f"isovalue {text}: a percentile lies between p0 and p100")
+        return [text.lower()]
+    if match := _RANGE.fullmatch(text):
+        first, last = _number(text, match["first"]), _number(text, match["last"])
+        count = int(match["count"])
+        if not 1 <= count <= _MOST_OF_A_RANGE:
+            raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
+        return [f"{value:.9g}" for value in np.linspace(first, last, count).tolist()]
+    _number(text, text)
+    return [text]
+
+
+def _number(text: str, part: str) -> float:
+    try:
+        value = float(part)
+    except ValueError:
+        raise OptionError(f"isovalue {text}: is not a number, otsu, pNN or A:B:N") from None
+    if not math.isfinite(value):
+        raise OptionError(f"isovalue {text}: must be finite")
+    return value
+
+
+def choose(choice: str, histogram: Histogram) -> Chosen:
+    """The number behind a choice, for these samples. Raises FieldError where the samples offer none."""
+    if re.fullmatch(r"p[\d.]+", choice):
+        _needs_two_values(histogram)
+        value = histogram.scaled(percentile(histogram, float(choice[1:])))
+        return Chosen(choice, value, f"percentile {choice[1:]} of the finite samples")
+    if choice == "otsu":
+        _needs_two_values(histogram)
+        return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold")
+    if choice == AUTO:
+        _needs_two_values(histogram)
+        if is_two_valued(histogram):
+            low, high = histogram.range or (0.0, 0.0)
+            return Chosen(choice, (low + high) / 2, f"midpoint of the two values {low:g} and {high:g}")
+        return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold, since none was given")
+    return Chosen(choice, float(choice), "given")
+
+
+def _needs_two_values(histogram: Histogram) -> None:
+    if not histogram.finite:
+        raise FieldError("holds no finite sample, so there is no isovalue to choose; check the file")
+    if histogram.minimum == histogram.maximum:
+        value = histogram.scaled(histogram.minimum)
+        raise FieldError(f"every sample is {value:g}, so there is no isovalue to choose; give one with -i")
+
+
+def is_two_valued(histogram: Histogram) -> bool:
+    """Whether the finite samples take exactly two values."""
+    occupied = np.flatnonzero(histogram.counts)
+    if len(occupied) != 2 or occupied[0] != 0 or occupied[-1] != len(histogram.counts) - 1:
+        return False
+    samples = histogram.samples
+    ends = int(np.count_nonzero(samples == histogram.minimum)) + int(np.count_nonzero(samples == histogram.maximum))
+    return histogram.exact or ends == histogram.finite
+
+
+def otsu(histogram: Histogram) -> float:
+    """Otsu's threshold in the stored scale, halfway between the two classes' nearest occupied bins."""
+    occupied = np.flatnonzero(histogram.counts)
+    weights = histogram.counts[occupied].astype(np.float64)
+    values = _values(histogram, occupied)
+    below = np.cumsum(weights)[:-1]
+    above = weights.sum() - below
+    sums = np.cumsum(weights * values)
+    total = sums[-1]
+    between = below * above * (sums[:-1] / below - (total - sums[:-1]) / above) ** 2
+    cut = int(np.argmax(between))
+    if histogram.exact:
+        return float(values[cut] + values[cut + 1]) / 2
+    upper_edge = histogram.minimum + (occupied[cut] + 1) * histogram.width
+    lower_edge = histogram.minimum + occupied[cut + 1] * histogram.width
+    return float(upper_edge + lower_edge) / 2
+
+
+def _values(histogram: Histogram, bins: npt.NDArray[np.intp]) -> npt.NDArray[np.float64]:
+    middle = 0.0 if histogram.exact else 0.5
+    return histogram.minimum + (bins + middle) * histogram.width
+
+
+def percentile(histogram: Histogram, percent: float) -> float:
+    """The stored value below which `percent` of the finite samples lie, to the bin of a bin.
+
+    With a negative slope the percentile is counted from the other end, so that it holds for the values.
+    """
+    share = percent / 100 if histogram.slope > 0 else 1 - percent / 100
+    rank = min(int(share * histogram.finite), histogram.finite - 1)
+    bin_, rank_within = _bin_of_rank(histogram.counts, rank)
+    if histogram.exact:
+        return histogram.minimum + bin_
+    low = histogram.minimum + bin_ * histogram.width
+    high = min(low + histogram.width, histogram.maximum)
+    finer = _kernels.histogram(histogram.samples, low, high, len(histogram.counts), histogram.threads)
+    if int(finer.sum()) <= rank_within:
+        return high
+    fine_bin, _ = _bin_of_rank(finer, rank_within)
+    return low + (fine_bin + 0.5) * (high - low) / len(finer)
+
+
+def _bin_of_rank(counts: npt.NDArray[np.uint64], rank: int) -> tuple[int, int]:
+    """The bin that holds the sample of this rank, and the sample's rank within it."""
+    sums = np.cumsum(counts)
+    bin_ = int(np.searchsorted(sums, rank, side="right"))
+    before = int(sums[bin_ - 1]) if bin_ else 0
+    return bin_, rank - before

@@ -1,0 +1,60 @@
+"""Reports: the record of a run, and one renderer per format.
+
+A renderer is a function in its own file and a row here; the suffix of the report's path chooses it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from isocore.errors import OptionError, writing
+from isocore.report.record import BatchReport, RunReport, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
+from isocore.report.render_csv import render_csv
+from isocore.report.render_json import render_json, render_jsonl
+from isocore.report.render_markdown import render_markdown
+
+Renderer = Callable[[BatchReport], str]
+
+RENDERERS: dict[str, Renderer] = {
+    ".json": render_json,
+    ".jsonl": render_jsonl,
+    ".csv": render_csv,
+    ".md": render_markdown,
+}
+
+
+def renderer_for(path: Path) -> Renderer:
+    """The renderer of this path's suffix. Raises OptionError for any other."""
+    renderer = RENDERERS.get(path.suffix.lower())
+    if renderer is None:
+        raise OptionError(f"{path}: no such report format; choose one of {' '.join(RENDERERS)}")
+    return renderer
+
+
+def save_report(batch: BatchReport, path: Path) -> None:
+    """Write the report whole or not at all."""
+    text = renderer_for(path)(batch)
+    part = path.with_name(path.name + ".part")
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            part.write_text(text, encoding="utf-8", newline="")
+            os.replace(part, path)
+        finally:
+            part.unlink(missing_ok=True)
+
+
+__all__ = [
+    "RENDERERS",
+    "BatchReport",
+    "RunReport",
+    "batch_as_dict",
+    "batch_from_dict",
+    "render_json",
+    "renderer_for",
+    "run_as_dict",
+    "run_from_dict",
+    "save_report",
+]

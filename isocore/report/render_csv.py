@@ -1,0 +1,49 @@
+"""The report as a table: one output per row, a nested key as `surface.triangles`."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+from isocore.report.record import BatchReport, run_as_dict
+
+COLUMNS = (
+    "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field range"
+    " nonfinite isovalue asked chosen backend surface.triangles surface.vertices surface.components"
+    " surface.boundary_edges surface.nonmanifold_edges surface.nonmanifold_vertices surface.euler surface.watertight"
+    " surface.area surface.volume surface.degenerate reference.name reference.triangles reference.vertices"
+    " reference.seconds ratio.triangles ratio.seconds error.max_voxels error.mean_voxels error.rms_voxels error.max"
+    " error.mean error.rms search.cells search.extrema search.skeleton search.visited search.intersected"
+    " ambiguous.faces ambiguous.cells seconds.read seconds.prepare seconds.extract seconds.measure seconds.write"
+    " seconds.total peak_rss_bytes"
+).split()
+
+
+def render_csv(batch: BatchReport) -> str:
+    """Comma separated, quoted where needed, lines ended as RFC 4180 asks."""
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(COLUMNS)
+    for run in batch.outputs:
+        record = run_as_dict(run)
+        writer.writerow([_cell(_at(record, column)) for column in COLUMNS])
+    return text.getvalue()
+
+
+def _at(record: dict[str, Any], column: str) -> Any:
+    value: Any = record
+    for key in column.split("."):
+        value = value.get(key) if isinstance(value, dict) else None
+    return value
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        separator = "; " if value and isinstance(value[0], str) else " "
+        return separator.join(_cell(item) for item in value)
+    return f"{value:.9g}" if isinstance(value, float) else str(value)

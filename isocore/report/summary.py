@@ -1,0 +1,60 @@
+"""One line per output, as people read it: shared by the screen and by Markdown."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import Any
+
+from isocore.report.record import BatchReport, RunReport
+
+HEADINGS = ("file", "isovalue", "triangles", "reference", "ratio", "seconds", "ref. s", "watertight", "status")
+#: Headings of numbers, which are set to the right.
+RIGHT = frozenset(("isovalue", "triangles", "reference", "ratio", "seconds", "ref. s"))
+
+
+def summary_rows(batch: BatchReport) -> list[tuple[str, ...]]:
+    """The table on screen, without its headings."""
+    return [summary_row(run) for run in batch.outputs]
+
+
+def summary_row(run: RunReport) -> tuple[str, ...]:
+    """One output's cells, in the order of HEADINGS."""
+    surface, reference, ratio = run.surface or {}, run.reference or {}, run.ratio or {}
+    watertight = surface.get("watertight")
+    return (
+        PurePath(run.output or run.source).name if run.output != "-" else PurePath(run.source).name,
+        run.asked if run.isovalue is None else f"{run.isovalue:.6g}",
+        count(surface.get("triangles")),
+        count(reference.get("triangles")),
+        number(ratio.get("triangles"), ".2f"),
+        number(own_seconds(run), ".3f"),
+        number(reference.get("seconds"), ".3f"),
+        "" if watertight is None else "yes" if watertight else "no",
+        f"{run.status}, missed" if run.missed else run.status,
+    )
+
+
+def own_seconds(run: RunReport) -> float | None:
+    """Seconds to compare with the reference's: prepare and extract."""
+    if "extract" not in run.seconds:
+        return None
+    return run.seconds.get("prepare", 0.0) + run.seconds["extract"]
+
+
+def totals_line(batch: BatchReport) -> str:
+    """The sums in one sentence."""
+    totals = batch.totals
+    parts = [f"{totals[status]} {status}" for status in ("done", "empty", "skipped", "failed") if totals[status]]
+    if totals["missed"]:
+        parts.append(f"{totals['missed']} missed a requirement")
+    return f"{', '.join(parts) or 'nothing to do'}: {count(totals['triangles'])} triangles, {totals['seconds']:.2f} s"
+
+
+def count(value: Any) -> str:
+    """1,234,567 or nothing."""
+    return "" if value is None else f"{value:,}"
+
+
+def number(value: Any, form: str) -> str:
+    """A number in this form or nothing."""
+    return "" if value is None else format(value, form)
