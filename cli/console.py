@@ -36,7 +36,9 @@ class Progress:
             self._timer.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._wanted = False
         if self._timer is not None:
             self._timer.cancel()
@@ -60,7 +62,13 @@ class Progress:
 
     def _show(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
         from rich.progress import Progress as Bar
 
         if not self._wanted:
@@ -77,16 +85,12 @@ def say(text: str) -> None:
     click.echo(text, err=True)
 
 
-def say_run(run: RunReport) -> None:
+def lines_of(run: RunReport) -> list[str]:
     """What deserves a line at once: a failure, a miss, warnings."""
-    if run.status == "failed":
-        say(f"isocore: {run.message}")
-    for miss in run.missed:
-        say(f"isocore: {run.output}: misses {miss}")
-    for warning in run.warnings:
-        say(f"isocore: warning: {run.source}: {warning}")
-    if run.status == "empty":
-        say(f"isocore: warning: {run.source}: {run.message}")
+    lines = [f"isocore: {run.message}"] if run.status == "failed" else []
+    lines += [f"isocore: {run.output}: misses {miss}" for miss in run.missed]
+    warnings = [*run.warnings, run.message] if run.status == "empty" else run.warnings
+    return lines + [f"isocore: warning: {run.source}: {warning}" for warning in warnings]
 
 
 def say_table(batch: BatchReport) -> None:

@@ -22,7 +22,9 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.command(short_help="Volumes and meshes to surfaces.")
 @click.argument("inputs", nargs=-1, type=PATH, metavar="INPUT...")
 @click.option("--files-from", type=PATH, metavar="FILE|-", help="Read further inputs from a file, one a line.")
-@click.option("-i", "--isovalue", "isovalues", multiple=True, metavar="V", help="A number, otsu, pNN, A:B:N; repeatable.")
+@click.option(
+    "-i", "--isovalue", "isovalues", multiple=True, metavar="V", help="A number, otsu, pNN, A:B:N; repeatable."
+)
 @click.option("-o", "--output", type=PATH, metavar="FILE", help="For one input and one isovalue; - is stdout.")
 @click.option("-d", "--output-dir", type=PATH, metavar="DIR", help="For many; mirrors the input tree.")
 @click.option("-f", "--format", type=click.Choice(FORMATS), help="Default ply, or the suffix of -o.")
@@ -30,7 +32,9 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.option("-b", "--backend", metavar="NAME", help="The method; default by kind of input.")
 @click.option("--block-size", type=click.Choice(["1", "2", "4", "8", "16", "32"]), help="asc: cells per block.")
 @click.option("--max-error", type=MaxError(), help="asc: in voxels (0.5), world units (0.3mm) or none.")
-@click.option("--space", type=click.Choice(["ras", "lps", "las", "native", "index"]), default="native", show_default=True)
+@click.option(
+    "--space", type=click.Choice(["ras", "lps", "las", "native", "index"]), default="native", show_default=True
+)
 @click.option("--normals/--no-normals", help="Write vertex normals from the samples' gradient.")
 @click.option("--cap/--no-cap", help="Close the surface at the volume's border.")
 @reading_options
@@ -177,9 +181,10 @@ def _run(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
     from isocore.batch import run_jobs
     from isocore.report import BatchReport, save_report
 
-    from .console import Progress, say, say_run, say_table
+    from .console import Progress, lines_of, say, say_table
 
     runs: list[RunReport] = []
+    said: set[str] = set()
 
     def report() -> BatchReport:
         batch = BatchReport(tuple(runs), arguments=tuple(sys.argv[1:]), seconds=perf_counter() - start)
@@ -194,7 +199,10 @@ def _run(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
             runs.append(run)
             progress.step()
             progress.at(str(job.source))
-            say_run(run)
+            for line in lines_of(run):
+                if line not in said:
+                    say(line)
+            said.update(lines_of(run))
             if chosen["verbose"]:
                 say(f"{run.source} -> {run.output}: {run.chosen}, {run.seconds.get('total', 0):.3f} s")
             if run.output == str(job.targets[-1].output):
@@ -203,5 +211,3 @@ def _run(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
     if not chosen["quiet"]:
         say_table(batch)
     return batch
-
-

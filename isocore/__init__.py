@@ -13,10 +13,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from isocore.backends import BACKENDS, Backend, Extraction, Options
+    from isocore.backends import BACKENDS, Backend, Extraction, Options, extract
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError, InputError, IsocoreError, OptionError, OutputError
-    from isocore.extract import extract
     from isocore.measure import Measurements, measure
     from isocore.pipeline import Job, Target, convert
     from isocore.readers import ReadOptions, read
@@ -54,10 +53,9 @@ __all__ = [
 ]
 
 _HOMES = {
-    "backends": ("BACKENDS", "Backend", "Extraction", "Options"),
+    "backends": ("BACKENDS", "Backend", "Extraction", "Options", "extract"),
     "cell_mesh": ("CellMesh",),
     "errors": ("FieldError", "InputError", "IsocoreError", "OptionError", "OutputError"),
-    "extract": ("extract",),
     "measure": ("Measurements", "measure"),
     "pipeline": ("Job", "Target", "convert"),
     "readers": ("ReadOptions", "read"),

@@ -76,7 +76,8 @@ def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Optio
     """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
     normals = None
     if options.normals:
-        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, volume.inside_is_below, options.threads)
+        below = volume.inside_is_below
+        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, below, options.threads)
     return place_fresh(
         vertices, triangles, normals, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
     )
@@ -115,6 +116,11 @@ def prepare(field: Field, backend: str, options: Options) -> Extract:
         raise OptionError(f"{backend}: does not take {kind}; choose one of {', '.join(able)}")
     check_options(backend, options)
     return row.prepare(field, options)
+
+
+def extract(field: Field, isovalue: float, *, backend: str | None = None, options: Options | None = None) -> Surface:
+    """One surface of a volume or a mesh, by the named backend or the default one."""
+    return prepare(field, backend or default_backend(type(field)), options or Options())(isovalue).surface
 
 
 def check_options(backend: str, options: Options) -> None:

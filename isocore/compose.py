@@ -8,8 +8,8 @@ from typing import Any
 from isocore.backends import Extraction, Field, Options
 from isocore.histogram import Histogram
 from isocore.isovalue import Chosen
-from isocore.report.record import RunReport
 from isocore.measure import Measurements
+from isocore.report.record import RunReport
 from isocore.volume import Volume
 
 REQUIREMENTS = ("watertight", "manifold", "nonempty")

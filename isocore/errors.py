@@ -75,7 +75,9 @@ def reading(path: os.PathLike[str] | str) -> Iterator[None]:
     except RecursionError as error:
         raise InputError(f"{name}: is nested too deeply to be read") from error
     except Exception as error:
-        raise InputError(f"{name}: cannot be read ({one_line(error)}); check that it is what its suffix says") from error
+        raise InputError(
+            f"{name}: cannot be read ({one_line(error)}); check that it is what its suffix says"
+        ) from error
 
 
 @contextmanager

@@ -125,7 +125,8 @@ def otsu(histogram: Histogram) -> float:
 
 def _values(histogram: Histogram, bins: npt.NDArray[np.intp]) -> npt.NDArray[np.float64]:
     middle = 0.0 if histogram.exact else 0.5
-    return histogram.minimum + (bins + middle) * histogram.width
+    values: npt.NDArray[np.float64] = histogram.minimum + (bins + middle) * histogram.width
+    return values
 
 
 def percentile(histogram: Histogram, percent: float) -> float:

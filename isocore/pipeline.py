@@ -30,6 +30,8 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 REFERENCE = "mc"
+#: The target that is not a file.
+STDOUT = Path("-")
 STAGES = ("read", "prepare", "extract", "measure", "write")
 
 
@@ -131,7 +133,7 @@ def failed(job: Job, target: Target, error: BaseException, *, seconds: dict[str,
     return RunReport(**asked, status="failed", message=message, seconds=seconds, peak_rss_bytes=peak_bytes())
 
 
-def _asked(job: Job, target: Target) -> dict[str, object]:
+def _asked(job: Job, target: Target) -> dict[str, Any]:
     return {
         "source": str(job.source),
         "output": str(target.output),
@@ -187,7 +189,7 @@ class _Reference:
 
     def __init__(self, source: Field, backend: str, job: Job) -> None:
         self._source, self._backend = source, backend
-        self._options = replace(job.options, **dict.fromkeys(compose.OWN_OPTIONS), normals=False)
+        self._options = Options(threads=job.options.threads, cap=job.options.cap)
         self._wanted = job.reference and isinstance(source, BACKENDS[REFERENCE].accepts)
         self._timer = Timer()
         self._extract: Extract | None = None

@@ -57,7 +57,7 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
         else:
             inside = [Input(name, name.parent)]
         for item in inside:
-            found.setdefault(os.path.abspath(item.path), item)
+            found.setdefault(_place(item.path), item)
     return list(found.values())
 
 
@@ -169,4 +169,3 @@ def _check_clashes(jobs: list[Job]) -> None:
 
 def _place(path: Path) -> str:
     return os.path.normcase(os.path.realpath(path))
-

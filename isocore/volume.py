@@ -58,7 +58,8 @@ class Volume:
         if min(samples.shape) < 2:
             raise FieldError(f"a volume needs two samples per axis, this one has {_times(samples.shape)}")
         if samples.dtype.name not in SAMPLE_TYPES or not samples.dtype.isnative:
-            raise FieldError(f"samples of type {samples.dtype} cannot be contoured; use one of {', '.join(SAMPLE_TYPES)}")
+            known = ", ".join(SAMPLE_TYPES)
+            raise FieldError(f"samples of type {samples.dtype} cannot be contoured; use one of {known}")
         if not samples.flags.f_contiguous:
             raise FieldError("samples must be in Fortran order (i fastest)")
         if not (math.isfinite(self.slope) and math.isfinite(self.intercept) and self.slope != 0):

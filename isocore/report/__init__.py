@@ -5,15 +5,22 @@ A renderer is a function in its own file and a row here; the suffix of the repor
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
-from isocore.errors import OptionError, writing
-from isocore.report.record import BatchReport, RunReport, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
+from isocore.errors import OptionError
+from isocore.report.record import (
+    BatchReport,
+    RunReport,
+    batch_as_dict,
+    batch_from_dict,
+    run_as_dict,
+    run_from_dict,
+)
 from isocore.report.render_csv import render_csv
 from isocore.report.render_json import render_json, render_jsonl
 from isocore.report.render_markdown import render_markdown
+from isocore.whole_file import whole_file
 
 Renderer = Callable[[BatchReport], str]
 
@@ -36,14 +43,8 @@ def renderer_for(path: Path) -> Renderer:
 def save_report(batch: BatchReport, path: Path) -> None:
     """Write the report whole or not at all."""
     text = renderer_for(path)(batch)
-    part = path.with_name(path.name + ".part")
-    with writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            part.write_text(text, encoding="utf-8", newline="")
-            os.replace(part, path)
-        finally:
-            part.unlink(missing_ok=True)
+    with whole_file(path) as stream:
+        stream.write(text.encode())
 
 
 __all__ = [

@@ -5,10 +5,11 @@ Keys are a contract (docs/report.md): a key is added with care, and none is rena
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import platform
 import sys
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 SCHEMA = 1
@@ -42,15 +43,15 @@ class RunReport:
     asked: str = ""
     chosen: str = ""
     backend: str | None = None
-    options: dict[str, Any] = field(default_factory=dict)
+    options: dict[str, Any] = dataclasses.field(default_factory=dict)
     surface: dict[str, Any] | None = None
     reference: dict[str, Any] | None = None
     ratio: dict[str, Any] | None = None
     error: dict[str, Any] | None = None
     search: dict[str, Any] | None = None
     ambiguous: dict[str, Any] | None = None
-    facts: dict[str, Any] = field(default_factory=dict)
-    seconds: dict[str, float] = field(default_factory=dict)
+    facts: dict[str, Any] = dataclasses.field(default_factory=dict)
+    seconds: dict[str, float] = dataclasses.field(default_factory=dict)
     peak_rss_bytes: int | None = None
 
 
@@ -61,8 +62,8 @@ class BatchReport:
     outputs: tuple[RunReport, ...]
     arguments: tuple[str, ...] = ()
     seconds: float = 0.0
-    tool: dict[str, Any] = field(default_factory=lambda: tool())
-    host: dict[str, Any] = field(default_factory=lambda: host())
+    tool: dict[str, Any] = dataclasses.field(default_factory=lambda: tool())
+    host: dict[str, Any] = dataclasses.field(default_factory=lambda: host())
 
     @property
     def totals(self) -> dict[str, Any]:
@@ -100,7 +101,9 @@ def run_from_dict(record: dict[str, Any]) -> RunReport:
     """The inverse of run_as_dict; keys of a later version are left out."""
     known = {item.name for item in fields(RunReport)}
     lists = ("warnings", "missed", "shape", "spacing", "range")
-    values = {key: tuple(value) if key in lists and value is not None else value for key, value in record.items()}
+    values: dict[str, Any] = {
+        key: tuple(value) if key in lists and value is not None else value for key, value in record.items()
+    }
     return RunReport(**{key: value for key, value in values.items() if key in known})
 
 

@@ -8,16 +8,20 @@ from typing import Any
 
 from isocore.report.record import BatchReport, run_as_dict
 
-COLUMNS = (
-    "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field range"
-    " nonfinite isovalue asked chosen backend surface.triangles surface.vertices surface.components"
-    " surface.boundary_edges surface.nonmanifold_edges surface.nonmanifold_vertices surface.euler surface.watertight"
-    " surface.area surface.volume surface.degenerate reference.name reference.triangles reference.vertices"
-    " reference.seconds ratio.triangles ratio.seconds error.max_voxels error.mean_voxels error.rms_voxels error.max"
-    " error.mean error.rms search.cells search.extrema search.skeleton search.visited search.intersected"
-    " ambiguous.faces ambiguous.cells seconds.read seconds.prepare seconds.extract seconds.measure seconds.write"
-    " seconds.total peak_rss_bytes"
-).split()
+_PARTS = {
+    "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",
+    " ": "range nonfinite isovalue asked chosen backend",
+    "surface": "triangles vertices components boundary_edges nonmanifold_edges nonmanifold_vertices euler watertight",
+    "surface ": "area volume degenerate",
+    "reference": "name triangles vertices seconds",
+    "ratio": "triangles seconds",
+    "error": "max mean rms max_world mean_world rms_world",
+    "search": "cells extrema skeleton visited intersected",
+    "ambiguous": "faces cells",
+    "seconds": "read prepare extract measure write total",
+    "  ": "peak_rss_bytes",
+}
+COLUMNS = [f"{part.strip()}.{key}".lstrip(".") for part, keys in _PARTS.items() for key in keys.split()]
 
 
 def render_csv(batch: BatchReport) -> str:
