@@ -125,7 +125,7 @@ def otsu(histogram: Histogram) -> float:
 
 def _values(histogram: Histogram, bins: npt.NDArray[np.intp]) -> npt.NDArray[np.float64]:
     middle = 0.0 if histogram.exact else 0.5
-    values: npt.NDArray[np.float64] = histogram.minimum + (bins + middle) * histogram.width
+    values: npt.NDArray[np.float64] = (bins + middle) * np.float64(histogram.width) + histogram.minimum
     return values
 
 
