@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import PATH, Jobs, MaxError, read_options, reading_options
+from .options import PATH, Jobs, MaxError, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
     from isocore.pipeline import Job
@@ -168,13 +168,6 @@ def _check_folder(folder: Path) -> None:
             if not part.is_dir():
                 raise click.UsageError(f"{folder}: cannot be a folder, since {part} is a file")
             return
-
-
-def default_threads() -> int:
-    """The processors this process may use."""
-    import os
-
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _run(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -107,6 +108,11 @@ def read_options(chosen: dict[str, Any]) -> Any:
     names = ("field", "component", "shape", "dtype", "spacing", "origin", "byte_order", "offset")
     volume = chosen["volume"]
     return ReadOptions(volume=volume if isinstance(volume, int) else None, **{name: chosen[name] for name in names})
+
+
+def default_threads() -> int:
+    """The processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 PATH = click.Path(path_type=Path)

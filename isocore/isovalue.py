@@ -154,3 +154,15 @@ def _bin_of_rank(counts: npt.NDArray[np.uint64], rank: int) -> tuple[int, int]:
     bin_ = int(np.searchsorted(sums, rank, side="right"))
     before = int(sums[bin_ - 1]) if bin_ else 0
     return bin_, rank - before
+
+
+def suggestions(histogram: Histogram) -> tuple[Chosen, ...]:
+    """Isovalues worth trying, the automatic one first; none where all samples are alike."""
+    if not histogram.finite or histogram.minimum == histogram.maximum:
+        return ()
+    first = choose(AUTO, histogram)
+    if is_two_valued(histogram):
+        return (first,)
+    others = [choose(choice, histogram) for choice in ("p50", "p90", "p99")]
+    low = (histogram.range or (0.0, 0.0))[0]
+    return (first, *(choice for choice in others if choice.isovalue > low))

@@ -5,10 +5,11 @@ A renderer is a function in its own file and a row here; the suffix of the repor
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
-from isocore.errors import OptionError
+from isocore.errors import InputError, OptionError, one_line, reading
 from isocore.report.record import (
     BatchReport,
     RunReport,
@@ -47,12 +48,37 @@ def save_report(batch: BatchReport, path: Path) -> None:
         stream.write(text.encode())
 
 
+def load_report(path: Path) -> BatchReport:
+    """A JSON report, as save_report wrote it. Raises InputError for anything else."""
+    with reading(path):
+        try:
+            record = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise InputError(f"{path}: is not JSON ({one_line(error)}); name a .json report") from error
+        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
+            raise InputError(f"{path}: is not a report of schema {SCHEMA}; name a .json report of this version")
+        return batch_from_dict(record)
+
+
+def merged(batches: list[BatchReport]) -> BatchReport:
+    """Several reports as one; of two runs with the same output the later one stays."""
+    if len(batches) == 1:
+        return batches[0]
+    runs = {(run.output, run.source, run.asked): run for batch in batches for run in batch.outputs}
+    first = batches[0]
+    return BatchReport(
+        tuple(runs.values()), first.arguments, sum(batch.seconds for batch in batches), first.tool, first.host
+    )
+
+
 __all__ = [
     "RENDERERS",
     "BatchReport",
     "RunReport",
     "batch_as_dict",
     "batch_from_dict",
+    "load_report",
+    "merged",
     "render_json",
     "renderer_for",
     "run_as_dict",

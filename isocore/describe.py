@@ -1,0 +1,117 @@
+"""What a file holds, and which isovalues make sense: the facts behind `isocore info`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.backends import Field
+from isocore.extrema import count_extrema
+from isocore.histogram import Histogram, histogram
+from isocore.isovalue import Chosen, suggestions
+from isocore.readers import ReadOptions, count_volumes, read, suffix_of
+from isocore.volume import Volume
+
+_RAS_LETTERS = (("L", "R"), ("P", "A"), ("I", "S"))
+_NOT_ALONG_AN_AXIS = 1e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Description:
+    """Facts by heading, in the order they are shown; the histogram; isovalues worth trying."""
+
+    facts: dict[str, Any]
+    spread: Histogram
+    isovalues: tuple[Chosen, ...]
+
+
+def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Description:
+    """Read the file and look at it. Where it holds several volumes or fields and none is chosen, the first."""
+    facts: dict[str, Any] = {}
+    if suffix_of(path) == ".vtu":
+        options = _choose_field(path, options, facts)
+    else:
+        volumes = count_volumes(path, options)
+        if volumes > 1:
+            options = replace(options, volume=options.volume or 0)
+            facts |= {"volumes": volumes, "volume": options.volume}
+    source = read(path, options)
+    spread = histogram(source, threads=threads)
+    facts |= _volume_facts(source) if isinstance(source, Volume) else _mesh_facts(source)
+    facts |= {"range": spread.range, "nonfinite": spread.nonfinite}
+    facts["warnings"] = list(source.warnings)
+    return Description(facts, spread, suggestions(spread))
+
+
+def _choose_field(path: Path, options: ReadOptions, facts: dict[str, Any]) -> ReadOptions:
+    from isocore.readers.vtu import cell_fields, point_fields
+
+    points, cells = point_fields(path), cell_fields(path)
+    facts["point fields"] = [_field_text(field.name, field.components) for field in points]
+    facts["cell fields"] = [_field_text(field.name, field.components) for field in cells]
+    offered = [*points, *cells]
+    if options.field is None and offered:
+        options = replace(options, field=offered[0].name)
+    chosen = next((field for field in offered if field.name == options.field), None)
+    if chosen is not None and chosen.components > 1 and options.component is None:
+        options = replace(options, component="magnitude")
+    if options.component is not None:
+        facts["component"] = options.component
+    return options
+
+
+def _field_text(name: str, components: int) -> str:
+    return name if components == 1 else f"{name} ({components} components)"
+
+
+def _volume_facts(volume: Volume) -> dict[str, Any]:
+    letters, oblique = orientation(volume)
+    return {
+        "kind": "volume",
+        "shape": volume.shape,
+        "dtype": volume.samples.dtype.name,
+        "slope": volume.slope,
+        "intercept": volume.intercept,
+        "spacing": volume.spacing,
+        "unit": volume.unit,
+        "space": volume.space,
+        "orientation": letters,
+        "oblique": oblique,
+    }
+
+
+def _mesh_facts(mesh: Field) -> dict[str, Any]:
+    assert not isinstance(mesh, Volume)
+    minima, maxima = count_extrema(mesh)
+    return {
+        "kind": "mesh",
+        "points": len(mesh.points),
+        "cells": mesh.cell_counts,
+        "field": mesh.field_name,
+        "dtype": mesh.values.dtype.name,
+        "unit": mesh.unit,
+        "bounds": [mesh.points.min(axis=0).tolist(), mesh.points.max(axis=0).tolist()],
+        "minima": minima,
+        "maxima": maxima,
+    }
+
+
+def orientation(volume: Volume) -> tuple[str, bool]:
+    """Towards which side of the body each index axis grows, as RAS; "" where the space is not known.
+
+    Second: whether an axis lies between two sides.
+    """
+    if volume.space not in ("ras", "lps", "las"):
+        return "", False
+    columns: npt.NDArray[np.float64] = volume.in_space("ras").affine[:3, :3] / volume.spacing
+    letters = [""] * 3
+    left = columns.copy()
+    for _ in range(3):
+        row, column = np.unravel_index(np.argmax(np.abs(left)), left.shape)
+        letters[int(column)] = _RAS_LETTERS[int(row)][int(columns[row, column] > 0)]
+        left[row, :] = left[:, column] = 0
+    return "".join(letters), bool((np.abs(columns).max(axis=0) < 1 - _NOT_ALONG_AN_AXIS).any())
