@@ -11,6 +11,7 @@ from pathlib import Path
 
 from isocore.errors import InputError, OptionError, one_line, reading
 from isocore.report.record import (
+    SCHEMA,
     BatchReport,
     RunReport,
     batch_as_dict,
