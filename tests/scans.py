@@ -16,9 +16,7 @@ import numpy.typing as npt
 REAL_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 
 #: Not its own mirror image, in millimetres, with a rotation and three spacings.
-AFFINE = np.array(
-    [[0.0, -2.0, 0.0, 10.0], [1.5, 0.0, 0.0, -20.0], [0.0, 0.0, 3.0, 30.0], [0.0, 0.0, 0.0, 1.0]]
-)
+AFFINE = np.array([[0.0, -2.0, 0.0, 10.0], [1.5, 0.0, 0.0, -20.0], [0.0, 0.0, 3.0, 30.0], [0.0, 0.0, 0.0, 1.0]])
 
 
 def ramp(shape: tuple[int, ...] = (4, 5, 6), dtype: Any = "int16") -> npt.NDArray[Any]:

@@ -73,13 +73,9 @@ def chosen(layout: Layout, volume: int | None) -> int:
     """The volume asked for, where the file has it."""
     held = layout.volumes
     if held == 0:
-        raise FieldError(
-            "holds 0 volumes: an axis beyond space has no entries, so there is nothing to contour"
-        )
+        raise FieldError("holds 0 volumes: an axis beyond space has no entries, so there is nothing to contour")
     if volume is None and held > 1:
-        raise OptionError(
-            f"holds {held} volumes (0 to {held - 1}); choose one with --volume, or --volume all"
-        )
+        raise OptionError(f"holds {held} volumes (0 to {held - 1}); choose one with --volume, or --volume all")
     if volume is not None and not 0 <= volume < held:
         there = f"volumes 0 to {held - 1}" if held > 1 else "one volume, 0"
         raise OptionError(f"has no volume {volume}; it holds {there}")

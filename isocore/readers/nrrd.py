@@ -73,13 +73,9 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     files = [path.parent / name for name in names]
     missing = [name for name, file in zip(names, files, strict=True) if not file.is_file()]
     if missing or not files:
-        raise InputError(
-            f"its samples are missing: no {(missing or ['data file'])[0]} beside it; put it there"
-        )
+        raise InputError(f"its samples are missing: no {(missing or ['data file'])[0]} beside it; put it there")
     if layout.total_bytes % len(files):
-        raise InputError(
-            f"header spreads {layout.total_bytes:,} bytes unevenly over {len(files)} files; mend it"
-        )
+        raise InputError(f"header spreads {layout.total_bytes:,} bytes unevenly over {len(files)} files; mend it")
     return [(file, 0) for file in files]
 
 
@@ -113,9 +109,7 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
 
 def _skips(head: Head) -> tuple[int, int]:
     """Lines to skip before unpacking, and bytes to skip after it; -1: the samples are the last bytes."""
-    lines, skipped = (
-        sum(head.integers(name)) if name in head.fields else 0 for name in ("lineskip", "byteskip")
-    )
+    lines, skipped = (sum(head.integers(name)) if name in head.fields else 0 for name in ("lineskip", "byteskip"))
     if lines < 0 or skipped < -1:
         raise InputError(f"header skips {lines} lines and {skipped} bytes, which is not possible; mend it")
     return lines, skipped

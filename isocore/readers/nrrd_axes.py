@@ -72,9 +72,7 @@ def axes_of(head: Head) -> Axes:
     """Which axes lie in space, which one tells volumes apart, and what is stored."""
     sizes = head.integers("sizes")
     if (len(sizes),) != head.integers("dimension") or min(sizes, default=-1) < 0:
-        raise InputError(
-            f"header gives {head.need('dimension')} axes the sizes {head.need('sizes')}; it is damaged"
-        )
+        raise InputError(f"header gives {head.need('dimension')} axes the sizes {head.need('sizes')}; it is damaged")
     kinds = [kind.lower() for kind in head.words("kinds")] or ["???"] * len(sizes)
     directions = head.vectors("spacedirections") or [None] * len(sizes)
     if len(kinds) != len(sizes) or len(directions) != len(sizes):
@@ -112,9 +110,7 @@ def _sample_type(head: Head) -> np.dtype[Any]:
     if endian in ("little", "big"):
         return stored.newbyteorder("<" if endian == "little" else ">")
     if stored.itemsize > 1 and head.need("encoding").lower() not in TEXT_ENCODINGS:
-        raise InputError(
-            f"header gives no byte order for its {name} samples; add endian: little or endian: big"
-        )
+        raise InputError(f"header gives no byte order for its {name} samples; add endian: little or endian: big")
     return stored
 
 

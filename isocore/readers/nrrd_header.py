@@ -83,9 +83,7 @@ def parsed(path: Path) -> Head:
     files: list[str] | None = None
     with path.open("rb") as file:
         if not re.fullmatch(rb"NRRD000[1-5]", file.readline(20).rstrip()):
-            raise InputError(
-                "is no NRRD file (it begins with none of NRRD0001 to NRRD0005); check its suffix"
-            )
+            raise InputError("is no NRRD file (it begins with none of NRRD0001 to NRRD0005); check its suffix")
         while line := file.readline(_MOST_BYTES).rstrip():
             if file.tell() > _MOST_BYTES:
                 raise InputError("header does not end; it is damaged")

@@ -129,9 +129,7 @@ class Packed:
         return sum(map(len, self._whole()))
 
     def _ends_early(self, held_bytes: int) -> InputError:
-        return InputError(
-            f"{self._subject}ends early ({held_bytes:,} of {self._promised:,} bytes); {self._advice}"
-        )
+        return InputError(f"{self._subject}ends early ({held_bytes:,} of {self._promised:,} bytes); {self._advice}")
 
     def _whole(self) -> Iterator[bytes]:
         """All of the content that can be had, from its first byte, however damaged its end."""

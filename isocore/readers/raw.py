@@ -104,9 +104,7 @@ def _sample_type(name: str, byte_order: str | None) -> np.dtype[Any]:
         raise OptionError(f"--dtype is {name}; it takes uint8, int16, float32 and their like, or <u2")
     if coded["order"] in ("<", ">"):
         if byte_order is not None and coded["order"] != order:
-            raise OptionError(
-                f"--dtype {name} and --byte-order {byte_order} contradict each other; leave one out"
-            )
+            raise OptionError(f"--dtype {name} and --byte-order {byte_order} contradict each other; leave one out")
         order = "<" if coded["order"] == "<" else ">"
     return np.dtype(coded["kind"]).newbyteorder(order)
 
@@ -126,9 +124,7 @@ def _with_sidecar(path: Path, options: ReadOptions) -> ReadOptions:
     found = {key.replace("-", "_"): value for key, value in said.items()}
     for key, value in found.items():
         if key not in _SIDECAR_KEYS:
-            raise InputError(
-                f"its sidecar {sidecar.name} has the key {key}; it takes {', '.join(_SIDECAR_KEYS)}"
-            )
+            raise InputError(f"its sidecar {sidecar.name} has the key {key}; it takes {', '.join(_SIDECAR_KEYS)}")
         if not _fits(key, value):
             raise InputError(f"its sidecar {sidecar.name} gives {key} as {json.dumps(value)}; mend it")
     told: dict[str, Any] = {key: tuple(one) if isinstance(one, list) else one for key, one in found.items()}

@@ -26,18 +26,12 @@ def contourable(samples: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], tuple[str,
         if bounds.min <= lowest and highest <= bounds.max:
             return samples.astype(narrow, order="F"), ()
     exact = max(-lowest, highest) <= 2**53
-    loss = (
-        "every one is kept exactly"
-        if exact
-        else "beyond 2^53 they are rounded; isovalues there are not exact"
-    )
+    loss = "every one is kept exactly" if exact else "beyond 2^53 they are rounded; isovalues there are not exact"
     warning = f"{name} samples from {lowest:,} to {highest:,} are contoured as float64: {loss}"
     return samples.astype(np.float64, order="F"), (warning,)
 
 
-def from_float128(
-    samples: npt.NDArray[np.void], order: str
-) -> tuple[npt.NDArray[np.float64], tuple[str, ...]]:
+def from_float128(samples: npt.NDArray[np.void], order: str) -> tuple[npt.NDArray[np.float64], tuple[str, ...]]:
     """samples: 16 bytes each, IEEE binary128 or x87 extended, in byte order "<" or ">".
 
     x87 leaves its upper six bytes zero; a binary128 that has those zero is smaller than any scan's.

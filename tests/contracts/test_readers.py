@@ -47,9 +47,7 @@ def test_every_type_is_read_in_both_byte_orders(tmp_path: Path, suffix: str, dty
     """A stored type is kept; only its byte order becomes the machine's."""
     volume = read(save(tmp_path / f"scan{suffix}", ramp(dtype=dtype)))
     assert isinstance(volume, Volume)
-    assert np.array_equal(volume.samples, ramp()) and volume.samples.dtype == np.dtype(dtype).newbyteorder(
-        "="
-    )
+    assert np.array_equal(volume.samples, ramp()) and volume.samples.dtype == np.dtype(dtype).newbyteorder("=")
 
 
 @pytest.mark.parametrize("suffix", VOLUMES)

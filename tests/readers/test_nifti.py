@@ -145,13 +145,25 @@ def test_samples_without_an_order_are_refused_by_name(scan: Path, code: int, nam
         (0, struct.pack("<i", 349), InputError, "no known size"),
     ],
 )
-def test_a_lying_header_is_found_out(
-    scan: Path, at: int, value: bytes, error: type[IsocoreError], said: str
-) -> None:
+def test_a_lying_header_is_found_out(scan: Path, at: int, value: bytes, error: type[IsocoreError], said: str) -> None:
     """Each lie in one line."""
     with pytest.raises(error) as caught:
         read(patched(scan, at, value))
     assert said in str(caught.value) and str(caught.value).startswith(f"{scan}: ")
+
+
+@pytest.mark.parametrize(
+    ("image", "at", "form", "start"), [(nib.Nifti1Image, 108, "<f", 352), (nib.Nifti2Image, 168, "<q", 544)]
+)
+def test_samples_that_start_nowhere_start_behind_the_header(
+    tmp_path: Path, image: Any, at: int, form: str, start: int
+) -> None:
+    """A stated start inside the header is refused."""
+    path = tmp_path / "scan.nii"
+    image(ramp(), AFFINE).to_filename(path)
+    assert np.array_equal(volume_of(patched(path, at, struct.pack(form, 0))).samples, ramp())
+    with pytest.raises(InputError, match=f"samples at byte {start - 1}, inside itself"):
+        read(patched(path, at, struct.pack(form, start - 1)))
 
 
 def test_a_promise_of_a_million_millions_costs_nothing(tmp_path: Path) -> None:
@@ -187,9 +199,7 @@ def test_more_than_four_axes_are_volumes_too(tmp_path: Path) -> None:
     samples = ramp((3, 3, 3, 2, 2))
     nib.Nifti1Image(samples, np.eye(4)).to_filename(tmp_path / "scan.nii.gz")
     assert count_volumes(tmp_path / "scan.nii.gz") == 4
-    assert np.array_equal(
-        volume_of(tmp_path / "scan.nii.gz", ReadOptions(volume=2)).samples, samples[..., 0, 1]
-    )
+    assert np.array_equal(volume_of(tmp_path / "scan.nii.gz", ReadOptions(volume=2)).samples, samples[..., 0, 1])
 
 
 def test_extensions_are_stepped_over(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scans import patched, ramp, save
 
-from isocore.errors import InputError
+from isocore.errors import InputError, reading
 from isocore.readers import packed, read
 from isocore.readers.joined import Decoded, Joined
 from isocore.readers.packed import Packed, Packing, packing_of
@@ -49,9 +49,7 @@ def test_content_is_read_skipped_and_counted_alike(tmp_path: Path, packing: Pack
 def test_several_members_are_one_content(tmp_path: Path, packing: Packing) -> None:
     """As written by parallel packers, and by `cat a.gz b.gz`."""
     path = tmp_path / "content"
-    path.write_bytes(
-        b"".join(PACKERS[packing](CONTENT[at : at + 100_000]) for at in range(0, len(CONTENT), 100_000))
-    )
+    path.write_bytes(b"".join(PACKERS[packing](CONTENT[at : at + 100_000]) for at in range(0, len(CONTENT), 100_000)))
     assert _filled(path, packing) == CONTENT
 
 
@@ -61,9 +59,7 @@ def test_missing_bytes_are_counted(tmp_path: Path, packing: Packing) -> None:
     path = tmp_path / "content"
     noise = np.random.default_rng(1).bytes(400_000)
     path.write_bytes(PACKERS[packing](noise)[:300_000])
-    with pytest.raises(
-        InputError, match=r"^ends early \([\d,]+ of 400,000 bytes\); copy it again$"
-    ) as caught:
+    with pytest.raises(InputError, match=r"^ends early \([\d,]+ of 400,000 bytes\); copy it again$") as caught:
         _filled(path, packing, len(noise))
     held = int(str(caught.value).split("(")[1].split(" ")[0].replace(",", ""))
     if packing == "bzip2":
@@ -80,14 +76,18 @@ def test_a_complete_but_short_content_is_counted_too(tmp_path: Path) -> None:
         _filled(path, "gzip", len(CONTENT) + 1)
 
 
-def test_a_wrong_checksum_is_damage(tmp_path: Path) -> None:
-    """All bytes are there, but they are not those that were packed."""
-    path = save(tmp_path / "scan.nii.gz", ramp())
-    content = bytearray(path.read_bytes())
+@pytest.mark.parametrize("inflater", ["isal", "zlib"])
+@pytest.mark.parametrize("size", [1000, 1 << 18, 1 << 20])
+def test_a_wrong_checksum_is_damage(tmp_path: Path, size: int, inflater: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It stands behind the last byte that is needed, and is looked at all the same."""
+    if inflater == "zlib":
+        monkeypatch.setitem(sys.modules, "isal", None)
+    path = tmp_path / "content"
+    content = bytearray(gzip.compress(CONTENT[:size]))
     content[-6] ^= 1
     path.write_bytes(bytes(content))
-    with pytest.raises(InputError, match="compressed data is damaged"):
-        read(path)
+    with pytest.raises(InputError, match="compressed data is damaged"), reading(path):
+        _filled(path, "gzip", size)
 
 
 def test_zeros_after_the_last_member_are_padding(tmp_path: Path) -> None:
@@ -130,9 +130,7 @@ def test_more_than_the_machine_has_is_refused(tmp_path: Path, monkeypatch: pytes
     path = tmp_path / "content"
     path.write_bytes(bz2.compress(CONTENT))
     with (
-        pytest.raises(
-            InputError, match="needs 2,000,000,000,000 bytes of memory of 1,000,000,000; crop the data"
-        ),
+        pytest.raises(InputError, match="needs 2,000,000,000,000 bytes of memory of 1,000,000,000; crop the data"),
         Packed(path, packing="bzip2") as source,
     ):
         source.promise(2 * 10**12, kept_bytes=2 * 10**12)

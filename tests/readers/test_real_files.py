@@ -151,9 +151,7 @@ def test_one_scan_in_two_formats_is_one_scan() -> None:
     assert (first.space, second.space) == ("ras", "lps") and np.allclose(first.affine, turned, atol=1e-4)
 
 
-@pytest.mark.parametrize(
-    "fuzzed", sorted(path.name for path in (REAL_DATA / "broken/nifti-rs-fuzz").glob("*"))
-)
+@pytest.mark.parametrize("fuzzed", sorted(path.name for path in (REAL_DATA / "broken/nifti-rs-fuzz").glob("*")))
 def test_fuzzed_files_are_refused_under_any_name(tmp_path: Path, fuzzed: str) -> None:
     """They once crashed another reader."""
     for suffix in WITH_HEADER:
@@ -171,9 +169,7 @@ def test_fuzzed_files_are_refused_under_any_name(tmp_path: Path, fuzzed: str) ->
         ("volumes/raw/Molecule_U8_X100_Y100_Z120.binary", (100, 100, 120), "uint8"),
     ],
 )
-def test_raw_samples_are_read_as_described(
-    tmp_path: Path, name: str, shape: tuple[int, ...], dtype: str
-) -> None:
+def test_raw_samples_are_read_as_described(tmp_path: Path, name: str, shape: tuple[int, ...], dtype: str) -> None:
     """Without one byte too few or too many."""
     path = tmp_path / "scan.raw"
     shutil.copyfile(REAL_DATA / name, path)
