@@ -8,4 +8,5 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_surface(module);
     isocore::python::bind_marching_cells(module);
     isocore::python::bind_statistics(module);
+    isocore::python::bind_thinning(module);
 }

@@ -28,7 +28,8 @@ template <int max_triangles>
 struct CaseOf {
     std::uint8_t triangles = 0;
     std::uint8_t loops = 0;
-    std::array<std::uint8_t, 3 * max_triangles> edges{};  // three per triangle; 12 + n is the middle of loop n
+    std::uint8_t middles = 0;  // loops that are cut from a vertex in their middle
+    std::array<std::uint8_t, 3 * max_triangles> edges{};  // three per triangle; 12 + n is the n-th middle, always last
 };
 using Case = CaseOf<kMaxTriangles>;
 
@@ -107,7 +108,7 @@ constexpr int diagonal_cost(int a, int b, FaceDiagonals rule) {
 
 // The cheapest triangulation of one loop, by dynamic programming over its sub-polygons.
 template <class AnyCase>
-constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiagonals rule, int middle, AnyCase& out) {
+constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiagonals rule, AnyCase& out) {
     const auto draw = [&](int a, int b, int c) {
         const auto place = static_cast<unsigned>(3 * out.triangles++);
         out.edges[place] = static_cast<std::uint8_t>(a);
@@ -136,6 +137,7 @@ constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiag
     }
     if (cost[0][static_cast<unsigned>(length - 1)] >= kForbidden) {
         if (rule != FaceDiagonals::none) throw "a loop has no legal triangulation";
+        const int middle = 12 + out.middles++;
         for (int i = 0; i < length; ++i) draw(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>((i + 1) % length)], middle);
         return;
     }
@@ -157,9 +159,7 @@ constexpr AnyCase derive_case(unsigned corners, unsigned joined, FaceDiagonals r
     const Loops loops = trace(corners, joined);
     AnyCase out;
     out.loops = static_cast<std::uint8_t>(loops.count);
-    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) {
-        triangulate(loops.edges[n], loops.lengths[n], rule, 12 + static_cast<int>(n), out);
-    }
+    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) triangulate(loops.edges[n], loops.lengths[n], rule, out);
     return out;
 }
 

@@ -1,5 +1,6 @@
 // mesh_cases.hpp - Which triangles a cell draws. Triangles name the cell's edges, counter-clockwise seen from
-// outside, outside being where the lower values are; number 12 + n is a vertex in the middle of loop n.
+// outside, outside being where the lower values are; number 12 + n is the n-th
+// vertex in the middle of a loop, and comes last in its triangles.
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@ inline constexpr std::size_t kMiddle = 12;
 
 struct TetCase {
     std::uint8_t triangles = 0;
+    std::uint8_t middles = 0;
     std::array<std::uint8_t, 6> edges{};
 };
 
@@ -90,6 +92,22 @@ const HexCase& drawn(Hex, Mask signs, const Values& values, double isovalue) {
         packed |= static_cast<unsigned>(inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue)) << bit;
     }
     return kHexCases.cases[entry.first + packed];
+}
+
+// Writes the vertices in the middle of a cell's loops: the mean of a loop's vertices, which position(edge) tells.
+template <class AnyCase, class Position>
+void write_middles(const AnyCase& drawn, const Position& position, double* out) {
+    for (std::size_t middle = 0; middle < drawn.middles; ++middle, out += 3) {
+        std::array<double, 3> sum{};
+        int corners = 0;
+        for (std::size_t n = 0; n < 3u * drawn.triangles; n += 3) {
+            if (drawn.edges[n + 2] != kMiddle + middle) continue;
+            const double* corner = position(drawn.edges[n]);
+            for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += corner[axis];
+            ++corners;
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = sum[axis] / corners;
+    }
 }
 
 }  // namespace isocore::mesh

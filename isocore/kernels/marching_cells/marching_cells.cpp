@@ -43,7 +43,7 @@ struct Drawn {
     static constexpr std::uint32_t kMiddles = std::uint32_t{1} << 31;
     Array<Edge> edges;
     Array<std::uint32_t> triangles;
-    std::vector<std::array<std::uint32_t, 2>> middles;  // the triangles around each: from, to
+    std::vector<std::array<std::uint32_t, 2>> middles;  // the triangles around each: first, end
     std::size_t intersected = 0;
 };
 
@@ -61,18 +61,19 @@ void draw_cell(const Field<Value>& field, const std::int32_t* corners, const std
         place[edge] = static_cast<std::uint32_t>(out.edges.size());
         out.edges.push_back({std::min(a, b), std::max(a, b)});
     }
-    std::size_t middle = 0;
+    const auto first_middle = static_cast<std::uint32_t>(out.middles.size());
+    out.middles.resize(first_middle + drawn.middles, {0, 0});
     for (std::size_t n = 0; n < 3u * drawn.triangles; ++n) {
         const std::size_t edge = drawn.edges[n];
         if (edge < mesh::kMiddle) {
             out.triangles.push_back(place[edge]);
             continue;
         }
+        const auto middle = first_middle + static_cast<std::uint32_t>(edge - mesh::kMiddle);
         const auto triangle = static_cast<std::uint32_t>(out.triangles.size() / 3);
-        if (middle != edge) out.middles.push_back({triangle, triangle});
-        middle = edge;
-        out.middles.back()[1] = triangle + 1;
-        out.triangles.push_back(Drawn::kMiddles + static_cast<std::uint32_t>(out.middles.size() - 1));
+        if (out.middles[middle][1] == 0) out.middles[middle][0] = triangle;
+        out.middles[middle][1] = triangle + 1;
+        out.triangles.push_back(Drawn::kMiddles + middle);
     }
     ++out.intersected;
 }

@@ -1,0 +1,68 @@
+// thinning.hpp - Volume thinning and isosurface propagation: the two public functions.
+//
+// build: once per field. tets and hexes as in marching_cells.hpp. Linear in the number of cells.
+// propagate: once per isovalue. Visits the cells the isosurface meets and no others, and returns the vertices and the
+// triangles a full scan would, in the order of the walk: the same bytes for any number of threads.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/array.hpp"
+#include "common/mesh_field.hpp"
+#include "thinning/gluing.hpp"
+
+namespace isocore::thinning {
+
+// A cell of the index: kCorners point ids, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges
+// between the same two points.
+template <class Cell>
+inline constexpr std::size_t kRecord = Cell::kCorners + Cell::kFaces + Cell::kEdges;
+
+struct Part {
+    Array<std::int32_t> records;
+    Array<std::int32_t> skeleton;  // cells, by ascending low
+    Array<double> low, high;       // of every skeleton cell: it meets the isosurface iff low < isovalue <= high
+    std::array<std::size_t, 7> classes{};
+    std::size_t extrema = 0, bodies_and_voids = 0;
+    Oddities oddities;
+};
+
+struct Index {
+    Part tets, hexes;
+    std::size_t edge_count = 0;
+};
+
+struct Cells {
+    const std::int32_t *tets, *hexes;
+    std::size_t tet_count, hex_count;
+};
+
+template <class Value>
+Index build(const mesh::Field<Value>& field, const Cells& cells);
+
+// An index as it lies in memory or on disk.
+struct PartView {
+    const std::int32_t *records, *skeleton;
+    const double *low, *high;
+    std::size_t cells, skeleton_size;
+    std::uint8_t* visited;  // one per cell, all 0 before and after
+};
+
+struct IndexView {
+    PartView tets, hexes;
+    std::int32_t* vertex_of_edge;  // one per edge, all -1 before and after
+};
+
+struct Mesh {
+    Array<double> vertices;         // x, y, z, x, y, z ...
+    Array<std::int32_t> triangles;  // three vertices each
+    std::size_t seeds = 0;          // skeleton cells the isosurface meets
+    std::size_t visited = 0;        // cells walked, all of which it meets
+};
+
+template <class Value>
+Mesh propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
+
+}  // namespace isocore::thinning
