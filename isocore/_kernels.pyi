@@ -50,3 +50,30 @@ def extent(samples: npt.NDArray[Any], threads: int) -> tuple[float, float, int]:
 def histogram(
     samples: npt.NDArray[Any], low: float, high: float, bins: int, threads: int
 ) -> npt.NDArray[np.uint64]: ...
+
+# thinning: records (m, 14) or (m, 26), skeleton (s,), low and high (s,); then as isocore.mesh_index.IndexPart
+_Part = tuple[
+    _Int32, _Int32, _Float64, _Float64, int, tuple[int, ...], int, tuple[int, int, int], int, int
+]
+
+# build_index: (tetrahedra, hexahedra, edge ids)
+def build_index(points: _Float64, tets: _Int32, hexes: _Int32, values: _Real) -> tuple[_Part, _Part, int]: ...
+
+# propagate: (vertices, triangles, seeds, visited cells); `visited` and `vertex_of_edge` are left as they were
+def propagate(
+    points: _Float64,
+    values: _Real,
+    tets: _Int32,
+    tet_skeleton: _Int32,
+    tet_low: _Float64,
+    tet_high: _Float64,
+    tets_visited: _Bytes,
+    hexes: _Int32,
+    hex_skeleton: _Int32,
+    hex_low: _Float64,
+    hex_high: _Float64,
+    hexes_visited: _Bytes,
+    vertex_of_edge: _Int32,
+    isovalue: float,
+    threads: int = 1,
+) -> tuple[_Float64, _Int32, int, int]: ...

@@ -8,44 +8,23 @@ below; the contract tests find it by themselves.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
+from isocore.extraction import Extract, Extraction, Options
+from isocore.marching_cells import prepare_marching_cells
 from isocore.surface import Surface, place_fresh
+from isocore.thinning import prepare_thinning
 from isocore.volume import Volume
 
 Field = Volume | CellMesh
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What a user may ask of an extraction. A backend lists those it understands beyond the first three.
-
-    threads: at least 1. Results do not depend on it.
-    cap: close the surface at the volume's border.
-    normals: compute vertex normals.
-    """
-
-    threads: int = 1
-    cap: bool = False
-    normals: bool = False
-    block_size: int | None = None
-    max_error: str | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Extraction:
-    """A surface in the world, and what its method has to say about it, by the report's keys."""
-
-    surface: Surface
-    facts: dict[str, Any] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
-
-
-Extract = Callable[[float], Extraction]
+__all__ = [
+    "BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +39,11 @@ class Backend:
     cites: str = ""
 
 
-def _prepare_marching_cubes(volume: Volume, options: Options) -> Extract:
+def _prepare_marching_cubes(field: Field, options: Options) -> Extract:
+    if isinstance(field, CellMesh):
+        return prepare_marching_cells(field, options)
+    volume = field
+
     def extract(isovalue: float) -> Extraction:
         stored = volume.stored_isovalue(isovalue)
         vertices, triangles, faces, cells = _kernels.marching_cubes(
@@ -87,9 +70,16 @@ BACKENDS: dict[str, Backend] = {
     backend.name: backend
     for backend in (
         Backend(
+            name="thinning",
+            title="volume thinning",
+            accepts=(CellMesh,),
+            prepare=prepare_thinning,
+            cites="Itoh, Yamaguchi, Koyamada 1996, 2001",
+        ),
+        Backend(
             name="mc",
-            title="marching cubes",
-            accepts=(Volume,),
+            title="marching cubes; marching tetrahedra for meshes",
+            accepts=(Volume, CellMesh),
             prepare=_prepare_marching_cubes,
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),
@@ -125,7 +115,7 @@ def extract(field: Field, isovalue: float, *, backend: str | None = None, option
 
 def check_options(backend: str, options: Options) -> None:
     """Refuse an option that the backend does not understand, rather than ignore it."""
-    common = {"threads", "cap", "normals"}
+    common = {"threads", "cap", "normals", "isovalues", "index"}
     for option in fields(Options):
         given = getattr(options, option.name) is not None
         if option.name not in common and given and option.name not in BACKENDS[backend].options:

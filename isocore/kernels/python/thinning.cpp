@@ -22,7 +22,7 @@ nb::tuple part_to_numpy(thinning::Part&& part, std::size_t columns) {
     for (const std::size_t count : part.classes) classes.append(count);
     const thinning::Oddities& odd = part.oddities;
     return nb::make_tuple(to_numpy(std::move(part.records), columns), to_numpy(std::move(part.skeleton)), to_numpy(std::move(part.low)),
-                          to_numpy(std::move(part.high)), part.extrema, part.bodies_and_voids, nb::tuple(classes), odd.crowded_faces,
+                          to_numpy(std::move(part.high)), part.extrema, nb::tuple(classes), odd.crowded_faces,
                           nb::make_tuple(odd.crowded_cells[0], odd.crowded_cells[1], odd.crowded_cells[2]), odd.collapsed_cells,
                           odd.collapsed_cell);
 }

@@ -1,0 +1,58 @@
+"""The index of a mesh: what thinning a field once leaves behind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class IndexPart:
+    """The index of all cells of one kind; kernels/thinning/thinning.hpp says what a record holds.
+
+    records: (m, 14) int32 for tetrahedra, (m, 26) for hexahedra.
+    skeleton: (s,) int32, cells; low, high: (s,) float64, low ascending: the isovalues a skeleton cell holds.
+    extrema: vertices that are a local minimum or maximum.
+    classes: skeleton cells by the number of their face neighbours among the skeleton, from 0 to 6.
+    crowded_faces, crowded_cells: faces that more than two cells share, and three of the cells at the first.
+    collapsed_cells, collapsed_cell: cells that name a point twice, and the first of them, or -1.
+    """
+
+    records: npt.NDArray[np.int32]
+    skeleton: npt.NDArray[np.int32]
+    low: npt.NDArray[np.float64]
+    high: npt.NDArray[np.float64]
+    extrema: int
+    classes: tuple[int, ...]
+    crowded_faces: int
+    crowded_cells: tuple[int, int, int]
+    collapsed_cells: int
+    collapsed_cell: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeshIndex:
+    """What thinning knows of one field on one mesh. edges: how many edge ids the records name."""
+
+    tets: IndexPart
+    hexes: IndexPart
+    edges: int
+
+    @property
+    def parts(self) -> tuple[IndexPart, IndexPart]:
+        return self.tets, self.hexes
+
+    @property
+    def extrema(self) -> int:
+        return sum(part.extrema for part in self.parts)
+
+    @property
+    def skeleton_cells(self) -> int:
+        return sum(len(part.skeleton) for part in self.parts)
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all arrays."""
+        return sum(a.nbytes for part in self.parts for a in (part.records, part.skeleton, part.low, part.high))

@@ -1,0 +1,108 @@
+"""Volume thinning and isosurface propagation: thin a mesh once, contour it many times.
+
+Follows Itoh, Yamaguchi, Koyamada, "Volume Thinning for Automatic Isosurface Propagation", IEEE Visualization 1996,
+and "Fast Isosurface Generation Using the Volume Thinning Algorithm", IEEE TVCG 7(1), 2001; isocore/kernels/thinning
+says where it departs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Lock
+from typing import Any, TypeAlias, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.cell_mesh import CellMesh
+from isocore.errors import IsocoreError
+from isocore.extraction import Extract, Extraction, Options
+from isocore.index_file import load_index
+from isocore.marching_cells import mesh_surface, mesh_warnings
+from isocore.mesh_index import IndexPart, MeshIndex
+
+#: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
+Walked: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], int, int]
+
+# Past this share of the vertices, extrema are noise: the skeleton grows with them, and the walk saves little.
+_NOISE = 0.05
+
+
+def build_index(mesh: CellMesh) -> MeshIndex:
+    """Thin the mesh; linear in its cells."""
+    tets, hexes, edges = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
+    return MeshIndex(IndexPart(*tets), IndexPart(*hexes), edges)
+
+
+def prepare_thinning(mesh: CellMesh, options: Options) -> Extract:
+    """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
+    index, warnings = _index_of(mesh, options)
+    warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
+    propagate = propagator(mesh, index, options.threads)
+    known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
+
+    def extract(isovalue: float) -> Extraction:
+        vertices, triangles, seeds, visited = propagate(isovalue)
+        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
+        search = {**known, "seeds": seeds, "visited": visited, "intersected": visited}
+        return Extraction(surface, {"search": search}, warnings)
+
+    return extract
+
+
+def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, tuple[str, ...]]:
+    """The index beside the mesh if it matches, else a new one; and what to tell the user about that choice."""
+    warnings = []
+    if options.index is not None:
+        try:
+            return load_index(options.index, mesh), ()
+        except IsocoreError as error:
+            warnings.append(f"{error}; thinned anew")
+    index = build_index(mesh)
+    if options.isovalues == 1:
+        warnings.append(
+            "one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`"
+        )
+    if index.extrema > _NOISE * len(mesh.points):
+        share = 100 * index.extrema / len(mesh.points)
+        warnings.append(
+            f"{share:.0f} % of the points are extrema, so the field is noise to thinning and its skeleton holds "
+            f"{index.skeleton_cells:,} of {mesh.cells:,} cells: -b mc may be faster"
+        )
+    return index, tuple(warnings)
+
+
+def _oddities(index: MeshIndex) -> tuple[str, ...]:
+    """One line per kind of cell that is not glued to its neighbours, naming the first offender."""
+    warnings = []
+    for kind, part in (("tetrahedra", index.tets), ("hexahedra", index.hexes)):
+        if part.crowded_faces:
+            cells = ", ".join(str(cell) for cell in part.crowded_cells)
+            warnings.append(
+                f"{part.crowded_faces:,} faces are shared by more than two {kind}, the first by {cells}: "
+                "contoured, but each side for itself"
+            )
+        if part.collapsed_cells:
+            warnings.append(
+                f"{part.collapsed_cells:,} {kind} name a point twice, the first is {part.collapsed_cell}: "
+                "contoured, but each for itself"
+            )
+    return tuple(warnings)
+
+
+def propagator(mesh: CellMesh, index: MeshIndex, threads: int) -> Callable[[float], Walked]:
+    """isovalue -> what the walk finds; one call at a time, since calls share their marks."""
+    visited = [np.zeros(len(part.records), np.uint8) for part in index.parts]
+    vertex_of_edge = np.full(index.edges, -1, np.int32)
+    arrays: list[Any] = []
+    for part, marks in zip(index.parts, visited, strict=True):
+        arrays += [part.records, part.skeleton, part.low, part.high, marks]
+    one_at_a_time = Lock()
+    kernel: Any = _kernels.propagate
+
+    def propagate(isovalue: float) -> Walked:
+        with one_at_a_time:
+            return cast(Walked, kernel(mesh.points, mesh.values, *arrays, vertex_of_edge, isovalue, threads))
+
+    return propagate
