@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 Cells = npt.NDArray[np.int32]
+Keys = npt.NDArray[np.uint64]
 
 #: Per shape its faces of four corners, in turn around each, in VTK's corner order.
 QUADS = {
@@ -53,7 +54,7 @@ def split_cells(tets: Cells, hexes: Cells, wedges: Cells, pyramids: Cells) -> Sp
         tets = tets[~flat[0]]
     if not len(wedges) and not len(pyramids) and not flat[1].any():
         return SplitCells(tets, hexes, collapsed, 0)
-    split = _hang_together(hexes, flat[1], [_faces(wedges, "wedge"), _faces(pyramids, "pyramid")])
+    split = _hang_together(hexes, flat[1], [_quad_keys(wedges, "wedge"), _quad_keys(pyramids, "pyramid")])
     parts = [tets, cones(hexes[split], "hex"), cones(wedges, "wedge"), cones(pyramids, "pyramid")]
     return SplitCells(
         np.concatenate(parts), hexes[~split], collapsed, int(np.count_nonzero(split & ~flat[1]))
@@ -97,31 +98,35 @@ def _cut(quads: Cells) -> tuple[Cells, Cells]:
     return first, second
 
 
-def _faces(cells: Cells, shape: str) -> Cells:
-    """(m * quads, 4): the quads of the first cell, then of the second."""
-    return cells[:, QUADS[shape]].reshape(-1, 4)
-
-
-def _hang_together(hexes: Cells, seeds: npt.NDArray[np.bool_], quads: list[Cells]) -> npt.NDArray[np.bool_]:
-    """(h,) True for the hexahedra that reach a seed or one of `quads` through shared quad faces."""
-    faces = np.concatenate([_faces(hexes, "hex"), *quads])
-    owner = np.full(
-        len(faces), len(hexes)
-    )  # one number past the hexahedra stands for all that is split anyway
-    owner[: 6 * len(hexes)] = np.repeat(np.where(seeds, len(hexes), np.arange(len(hexes))), 6)
-    keys = _mixed(faces).sum(axis=1, dtype=np.uint64)
-    order = np.argsort(keys, kind="stable")
-    same = keys[order[1:]] == keys[order[:-1]]
+def _hang_together(hexes: Cells, seeds: npt.NDArray[np.bool_], keys: list[Keys]) -> npt.NDArray[np.bool_]:
+    """(h,) True for the hexahedra that reach a seed, or a quad of `keys`, through shared quad faces."""
+    if not len(hexes):
+        return seeds
+    split_anyway = len(hexes)  # one number past the hexahedra stands for all that is
+    own = np.where(seeds, split_anyway, np.arange(len(hexes)))
+    all_keys = np.concatenate([_quad_keys(hexes, "hex"), *keys])
+    owner = np.full(len(all_keys), split_anyway)
+    owner[: 6 * len(hexes)] = np.repeat(own, 6)
+    order = np.argsort(all_keys)
+    ordered = all_keys[order]
+    same = ordered[1:] == ordered[:-1]
     labels = _components(len(hexes) + 1, owner[order[1:][same]], owner[order[:-1][same]])
     reached: npt.NDArray[np.bool_] = labels[:-1] == labels[-1]
     return seeds | reached
 
 
-def _mixed(numbers: Cells) -> npt.NDArray[np.uint64]:
-    """Scrambled point numbers: their sum names a face in any corner order.
+def _quad_keys(cells: Cells, shape: str) -> Keys:
+    """(m * quads,) a number for each quad, the same in whatever order its corners are named.
 
-    Two faces that met by chance (once in 2^64 pairs) would only have more hexahedra split than need be.
+    Two quads that met by chance (once in 2^64 pairs) would only have more hexahedra split than need be.
     """
+    mixed = _mixed(cells)
+    sums = [mixed[:, a] + mixed[:, b] + mixed[:, c] + mixed[:, d] for a, b, c, d in QUADS[shape]]
+    return np.stack(sums, axis=1).ravel()
+
+
+def _mixed(numbers: Cells) -> Keys:
+    """Scrambled point numbers: sums of four of them are as good as random."""
     mixed = numbers.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
         mixed ^= mixed >> np.uint64(shift)

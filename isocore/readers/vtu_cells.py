@@ -80,8 +80,12 @@ class Corners:
 
 def count_cells(path: str, types: npt.NDArray[Any]) -> dict[int, int]:
     """Cells by VTK type; FieldError where a type cannot be contoured."""
-    histogram = np.bincount(types) if types.dtype.itemsize == 1 else np.bincount(_small(path, types))
-    counts = {int(number): int(histogram[number]) for number in np.flatnonzero(histogram)}
+    counts = {}
+    if len(types) and (types == types[0]).all():
+        counts = {int(types[0]): len(types)}
+    elif len(types):
+        histogram = np.bincount(_small(path, types))
+        counts = {int(number): int(histogram[number]) for number in np.flatnonzero(histogram)}
     for number, count in counts.items():
         if number in REFUSED:
             raise FieldError(
@@ -96,9 +100,9 @@ def count_cells(path: str, types: npt.NDArray[Any]) -> dict[int, int]:
 
 
 def _small(path: str, types: npt.NDArray[Any]) -> npt.NDArray[np.uint8]:
-    if types.size and (types.min() < 0 or types.max() > 255):
+    if types.min() < 0 or types.max() > 255:
         raise InputError(f"{path}: a cell type is outside 0 to 255; copy the file again")
-    return types.astype(np.uint8)
+    return types.astype(np.uint8, copy=False)
 
 
 def corners(
@@ -118,12 +122,19 @@ def corners(
                 f"{path}: array {name!r} holds {array.dtype.name} numbers, not integers; write it again"
             )
     starts = _starts(path, offsets, connectivity)
+    sizes = starts[1:] - starts[:-1]
+    if len(sizes) and sizes.min() < 0:
+        fall = int(np.argmax(sizes < 0))
+        raise InputError(
+            f"{path}: the offsets fall at cell {fall:,}; they have to grow, so copy the file again"
+        )
     found = []
     for number in counts:
         if number in SOLID:
             kind = SOLID[number]
             numbers = slice(0, len(types)) if len(counts) == 1 else _where(types, number)
-            rows = _rows(path, kind, starts, numbers, connectivity)
+            _check_sizes(path, kind, sizes[numbers])
+            rows = _rows(kind, starts, numbers, connectivity)
             found.append(Corners(kind, _narrow(path, rows, kind, points), numbers))
     return found
 
@@ -133,11 +144,6 @@ def _starts(path: str, offsets: npt.NDArray[Any], connectivity: npt.NDArray[Any]
     starts = np.empty(len(offsets) + 1, np.int64)
     starts[0] = 0
     starts[1:] = offsets
-    if len(offsets) and (starts[1:] < starts[:-1]).any():
-        cell = int(np.argmax(starts[1:] < starts[:-1]))
-        raise InputError(
-            f"{path}: the offsets fall at cell {cell:,}; they have to grow, so copy the file again"
-        )
     if starts[-1] > len(connectivity):
         raise InputError(
             f"{path}: needs {int(starts[-1]):,} corners, its connectivity holds {len(connectivity):,};"
@@ -153,20 +159,21 @@ def _where(types: npt.NDArray[Any], number: int) -> npt.NDArray[np.intp] | slice
     return slice(first, last + 1) if last - first + 1 == len(numbers) else numbers
 
 
+def _check_sizes(path: str, kind: Kind, sizes: npt.NDArray[np.int64]) -> None:
+    for size in (int(sizes.min()), int(sizes.max())):
+        if size != kind.nodes:
+            raise InputError(
+                f"{path}: one of its {kind.name} has {size:,} points instead of {kind.nodes}; copy it again"
+            )
+
+
 def _rows(
-    path: str,
     kind: Kind,
     starts: npt.NDArray[np.int64],
     numbers: npt.NDArray[np.intp] | slice,
     connectivity: npt.NDArray[Any],
 ) -> npt.NDArray[Any]:
     """(m, nodes) of the connectivity."""
-    sizes = np.diff(starts)[numbers]
-    if (sizes != kind.nodes).any():
-        wrong = int(sizes[np.argmax(sizes != kind.nodes)])
-        raise InputError(
-            f"{path}: one of its {kind.name} has {wrong:,} points instead of {kind.nodes}; copy it again"
-        )
     rows: npt.NDArray[Any]
     if isinstance(numbers, slice):
         rows = connectivity[starts[numbers.start] : starts[numbers.stop]].reshape(-1, kind.nodes)
