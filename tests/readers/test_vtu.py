@@ -162,7 +162,7 @@ UNUSUAL = {
         text.replace(">\n  ", "><![CDATA[", 1).replace("\n</DataArray>", "]]></DataArray>", 1).encode()
     ),
     "doctype": lambda text: text.replace("<VTKFile", "<!DOCTYPE VTKFile>\n<VTKFile", 1).encode(),
-    "comment": lambda text: text.replace(" 0.", "<!-- here --> 0.", 1).encode(),
+    "comment": lambda text: text.replace(" 0.", "<!-- here --> 0.", 2).encode(),
 }
 
 

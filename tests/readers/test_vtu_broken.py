@@ -205,10 +205,12 @@ def test_a_file_of_collapsed_cells_only_is_refused(tmp_path):
 def test_a_header_that_promises_too_much_reserves_nothing(encoding, tmp_path):
     """10^12 numbers promised, and the address space for 1 GiB: the answer is a refusal, not a crash."""
     path = write(tmp_path / "a.vtu", GOOD, encoding)
-    data = path.read_bytes().replace(b'NumberOfPoints="17"', b'NumberOfPoints="1000000000000"')
-    if encoding is ZLIB:
+    data = path.read_bytes()
+    if encoding is not ZLIB:
+        data = data.replace(b'NumberOfPoints="17"', b'NumberOfPoints="1000000000000"')
+    else:
         position = data.index(b"_", data.index(b"<AppendedData")) + 1
-        data = data[: position + 8] + struct.pack("<Q", 10**12) + data[position + 16 :]
+        data = data[: position + 8] + struct.pack("<2Q", 10**12, 10**12) + data[position + 24 :]
     path.write_bytes(data)
     resource = pytest.importorskip("resource")
     limits = resource.getrlimit(resource.RLIMIT_AS)
@@ -219,6 +221,18 @@ def test_a_header_that_promises_too_much_reserves_nothing(encoding, tmp_path):
     finally:
         resource.setrlimit(resource.RLIMIT_AS, limits)
     assert "memory" not in message
+
+
+@pytest.mark.parametrize("wanted", [1, 8, 128, 144, 200])
+@pytest.mark.parametrize("compressor", ["zlib", "lzma"])
+def test_a_part_that_inflates_to_another_size_is_refused(compressor, wanted, tmp_path):
+    """The first field's only part has 136 bytes; its header says otherwise."""
+    path = write(tmp_path / "a.vtu", GOOD, Encoding("appended", compressor=compressor, header="UInt64"))
+    data = path.read_bytes()
+    position = data.index(b"_", data.index(b"<AppendedData")) + 1
+    assert struct.unpack_from("<3Q", data, position) == (1, 256, 136)
+    path.write_bytes(data[: position + 16] + struct.pack("<Q", wanted) + data[position + 24 :])
+    assert f"array 'f' inflates to another size than the {wanted} bytes promised" in refusal(path)
 
 
 @pytest.mark.parametrize("encoding", [e for e in every_encoding() if e.header == "UInt32"], ids=str)
