@@ -20,6 +20,19 @@ def marching_cubes(
     samples: _Samples, isovalue: float, below: bool = False, capped: bool = False, threads: int = 1
 ) -> tuple[_Real, _Int32, int, int]: ...
 
+# climbing: (vertices in index space, triangles, facts by name)
+def climb(
+    samples: _Samples,
+    isovalue: float,
+    below: bool = False,
+    capped: bool = False,
+    threads: int = 1,
+    block_size: int = 16,
+    max_error: float = ...,
+    in_world: bool = False,
+    spacing: tuple[float, float, float] = ...,
+) -> tuple[_Real, _Int32, dict[str, Any]]: ...
+
 # surface: vertices (v, 3), triangles (t, 3), normals (v, 3), affine (3, 4); `out` and `flip` write in place
 # measure: ((components, boundary edges, non-manifold edges, non-manifold vertices, misoriented edges, Euler
 # number, degenerate triangles), area, signed volume, bounds)

@@ -13,6 +13,7 @@ from typing import Any
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
+from isocore.climbing import bound_for, check_block_size, climbing_facts
 from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Options
 from isocore.marching_cells import prepare_marching_cells
@@ -55,6 +56,28 @@ def _prepare_marching_cubes(field: Field, options: Options) -> Extract:
     return extract
 
 
+def _prepare_climbing(volume: Volume, options: Options) -> Extract:
+    block_size = check_block_size(options.block_size)
+    bound = bound_for(volume, options.max_error)
+
+    def extract(isovalue: float) -> Extraction:
+        vertices, triangles, facts = _kernels.climb(
+            volume.samples,
+            volume.stored_isovalue(isovalue),
+            volume.inside_is_below,
+            options.cap,
+            options.threads,
+            block_size,
+            bound.distance,
+            bound.in_world,
+            volume.spacing,
+        )
+        surface = placed_surface(volume, vertices, triangles, options)
+        return Extraction(surface, climbing_facts(facts, bound, volume.unit))
+
+    return extract
+
+
 def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Options) -> Surface:
     """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
     normals = None
@@ -69,6 +92,14 @@ def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Optio
 BACKENDS: dict[str, Backend] = {
     backend.name: backend
     for backend in (
+        Backend(
+            name="asc",
+            title="adaptive skeleton climbing",
+            accepts=(Volume,),
+            prepare=_prepare_climbing,
+            options=frozenset({"block_size", "max_error"}),
+            cites="Poston, Wong, Heng 1998",
+        ),
         Backend(
             name="thinning",
             title="volume thinning",

@@ -26,34 +26,45 @@ inline std::uint64_t crossed_edges(const SignGrid& signs, int axis, std::size_t 
     return k + 1 < signs.dims[2] ? row[w] ^ signs.row(j, k + 1)[w] : 0;
 }
 
-// Writes the vertices of row (j, k) in order, from `out` on, and returns the end.
-template <class Sample, class Coordinate>
-Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
-                               std::size_t k, Coordinate* out) {
+// Where the grid edge along `axis` that starts at sample (i, j, k) is crossed, as a share of the way. An edge into the
+// padding is crossed next to the volume's own sample.
+template <class Sample>
+double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
+                     std::size_t k) {
     const std::size_t pad = signs.pad;
+    if (pad) {
+        const std::size_t start = axis == 0 ? i : axis == 1 ? j : k;
+        if (start == 0) return 1 - kClamp;
+        if (start == signs.dims[static_cast<std::size_t>(axis)] - 2) return kClamp;
+    }
+    const Sample* low = samples.data + samples.index(i - pad, j - pad, k - pad);
+    return crossing(low[0], low[samples.step(axis)], isovalue);
+}
+
+// Writes the vertices of row (j, k) in order, from `out` on, and returns the end: those of the edges along each axis
+// whose bits `edges(axis, w)` gives.
+template <class Sample, class Coordinate, class Edges>
+Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
+                               std::size_t k, Coordinate* out, const Edges& edges) {
+    const double pad = static_cast<double>(signs.pad);
     for (int axis = 0; axis < 3; ++axis) {
-        const std::size_t along = axis == 1 ? j : k, last = signs.dims[static_cast<std::size_t>(axis)] - 2;
         for (std::size_t w = 0; w < signs.words; ++w) {
-            for (std::uint64_t left = crossed_edges(signs, axis, j, k, w); left != 0; left &= left - 1) {
+            for (std::uint64_t left = edges(axis, w); left != 0; left &= left - 1) {
                 const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(left));
-                const std::size_t start = axis == 0 ? i : along;
-                double t;
-                if (pad && start == 0) {
-                    t = 1 - kClamp;
-                } else if (pad && start == last) {
-                    t = kClamp;
-                } else {
-                    const Sample* low = samples.data + samples.index(i - pad, j - pad, k - pad);
-                    t = crossing(low[0], low[samples.step(axis)], isovalue);
-                }
-                double place[3] = {static_cast<double>(i) - static_cast<double>(pad), static_cast<double>(j) - static_cast<double>(pad),
-                                   static_cast<double>(k) - static_cast<double>(pad)};
-                place[axis] += t;
+                double place[3] = {static_cast<double>(i) - pad, static_cast<double>(j) - pad, static_cast<double>(k) - pad};
+                place[axis] += edge_crossing(samples, signs, isovalue, axis, i, j, k);
                 for (int a = 0; a < 3; ++a) *out++ = static_cast<Coordinate>(place[a]);
             }
         }
     }
     return out;
+}
+
+template <class Sample, class Coordinate>
+Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
+                               std::size_t k, Coordinate* out) {
+    return write_row_vertices(samples, signs, isovalue, j, k, out,
+                              [&](int axis, std::size_t w) { return crossed_edges(signs, axis, j, k, w); });
 }
 
 }  // namespace isocore

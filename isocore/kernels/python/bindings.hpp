@@ -13,5 +13,6 @@ void bind_surface(nanobind::module_& module);
 void bind_marching_cells(nanobind::module_& module);
 void bind_statistics(nanobind::module_& module);
 void bind_thinning(nanobind::module_& module);
+void bind_climbing(nanobind::module_& module);
 
 }  // namespace isocore::python

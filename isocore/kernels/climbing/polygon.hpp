@@ -1,0 +1,78 @@
+// polygon.hpp - Cuts the loop of a highrice into triangles. A diagonal whose ends share a face of the box could be
+// drawn by the neighbour too and is not taken; of the others the cheapest set is found by dynamic programming.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "climbing/vectors.hpp"
+
+namespace isocore::climbing {
+
+struct Corner {
+    Point place;
+    unsigned faces;
+    std::int32_t vertex;
+};
+
+class Polygon {
+  public:
+    std::vector<Corner> corners;
+
+    // Calls draw(a, b, c), numbers of corners, for each of corners.size() - 2 triangles.
+    template <class Draw>
+    void cut(const Draw& draw) {
+        const std::size_t n = corners.size();
+        if (n == 3) return draw(0, 1, 2);
+        cost_.assign(n * n, 0);
+        apex_.assign(n * n, 0);
+        for (std::size_t span = 2; span < n; ++span) {
+            for (std::size_t i = 0; i + span < n; ++i) find_apex(i, i + span);
+        }
+        if (!std::isfinite(cost_[n - 1])) throw std::logic_error("a loop has no legal triangulation");
+        open_.assign(1, {0, n - 1});
+        while (!open_.empty()) {
+            const auto [i, j] = open_.back();
+            open_.pop_back();
+            if (j - i < 2) continue;
+            const std::size_t k = apex_[i * n + j];
+            draw(i, k, j);
+            open_.push_back({k, j});
+            open_.push_back({i, k});
+        }
+    }
+
+  private:
+    void find_apex(std::size_t i, std::size_t j) {
+        const std::size_t n = corners.size();
+        double best = std::numeric_limits<double>::infinity();
+        const bool side = i == 0 && j == n - 1;
+        if (side || !(corners[i].faces & corners[j].faces)) {
+            for (std::size_t k = i + 1; k < j; ++k) {
+                const double rest = cost_[i * n + k] + cost_[k * n + j];
+                if (!(rest < best)) continue;
+                const double price = rest + area(corners[i].place, corners[k].place, corners[j].place);
+                if (price < best) {
+                    best = price;
+                    apex_[i * n + j] = k;
+                }
+            }
+        }
+        cost_[i * n + j] = best;
+    }
+
+    static double area(const Point& a, const Point& b, const Point& c) {
+        const Point normal = cross(minus(b, a), minus(c, a));
+        return std::sqrt(dot(normal, normal));
+    }
+
+    std::vector<double> cost_;
+    std::vector<std::size_t> apex_;
+    std::vector<std::array<std::size_t, 2>> open_;
+};
+
+}  // namespace isocore::climbing

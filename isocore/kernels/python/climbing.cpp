@@ -1,0 +1,75 @@
+// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing), once per sample type.
+#include <nanobind/stl/array.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "climbing/climb.hpp"
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+
+namespace isocore::python {
+namespace {
+
+// float32 coordinates keep two vertices of one grid line apart up to this many samples.
+constexpr std::size_t kLongestForFloat = 8192;
+
+nb::tuple error_tuple(const climbing::Deviation& deviation, std::size_t crossings) {
+    const double count = crossings ? static_cast<double>(crossings) : 1;
+    return nb::make_tuple(deviation.max, deviation.sum / count, std::sqrt(deviation.squares / count));
+}
+
+nb::dict facts_dict(const climbing::Facts& facts) {
+    nb::dict out;
+    out["highrices"] = facts.highrices;
+    out["blocks"] = facts.blocks;
+    out["blocks_visited"] = facts.blocks_visited;
+    out["ambiguous_faces"] = facts.ambiguous_faces;
+    out["ambiguous_cells"] = facts.ambiguous_cells;
+    out["split_again"] = facts.split_again;
+    out["error_voxels"] = error_tuple(facts.in_voxels, facts.crossings);
+    out["error_world"] = error_tuple(facts.in_world, facts.crossings);
+    return out;
+}
+
+template <class Sample, class Coordinate>
+nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& options) {
+    climbing::Mesh<Coordinate> mesh;
+    {
+        const nb::gil_scoped_release unlocked;
+        mesh = climbing::climb<Sample, Coordinate>(grid_view(samples), options);
+    }
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), facts_dict(mesh.facts));
+}
+
+template <class Sample>
+void bind(nb::module_& module) {
+    module.def(
+        "climb",
+        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size, double max_error,
+           bool in_world, std::array<double, 3> spacing) {
+            const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing};
+            const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
+            return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
+        },
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
+        nb::arg("block_size") = 16, nb::arg("max_error") = std::numeric_limits<double>::infinity(),
+        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1});
+}
+
+}  // namespace
+
+void bind_climbing(nb::module_& module) {
+    bind<std::uint8_t>(module);
+    bind<std::int8_t>(module);
+    bind<std::uint16_t>(module);
+    bind<std::int16_t>(module);
+    bind<std::uint32_t>(module);
+    bind<std::int32_t>(module);
+    bind<float>(module);
+    bind<double>(module);
+}
+
+}  // namespace isocore::python
