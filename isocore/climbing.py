@@ -92,9 +92,11 @@ def bound_for(volume: Volume, text: str | None) -> Bound:
 
 def climbing_facts(facts: dict[str, Any], bound: Bound, unit: str) -> dict[str, Any]:
     """The kernel's facts by the report's keys."""
-    voxels, world = (dict(zip(("max", "mean", "rms"), facts[key], strict=True)) for key in ("error_voxels", "error_world"))
+    names = ("max", "mean", "rms")
+    error: dict[str, Any] = dict(zip(names, facts["error_voxels"], strict=True))
+    error |= {f"{name}_world": value for name, value in zip(names, facts["error_world"], strict=True)}
     return {
-        "error": {"voxels": voxels, "world": world, "unit": unit, "bound": bound.text},
+        "error": error | {"unit": unit, "bound": bound.text},
         "ambiguous": {"faces": facts["ambiguous_faces"], "cells": facts["ambiguous_cells"]},
         "climbing": {
             "highrices": facts["highrices"],

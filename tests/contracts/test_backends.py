@@ -18,9 +18,7 @@ VOLUME_BACKENDS = [name for name, backend in BACKENDS.items() if Volume in backe
 each_backend = pytest.mark.parametrize("backend", VOLUME_BACKENDS)
 each_shape = pytest.mark.parametrize("shape", padded_shapes(), ids=lambda shape: shape.name)
 
-small_volumes = arrays(
-    np.int8, st.tuples(*[st.integers(2, 6)] * 3), elements=st.integers(-1, 1), fill=st.nothing()
-)
+small_volumes = arrays(np.int8, st.tuples(*[st.integers(2, 6)] * 3), elements=st.integers(-1, 1), fill=st.nothing())
 
 
 def surface_of(volume: Volume, isovalue: float, backend: str, **options: object) -> Surface:
@@ -51,7 +49,8 @@ def test_topology_is_exact(backend: str, shape: Shape) -> None:
 @each_shape
 def test_area_and_volume_are_near_the_truth(backend: str, shape: Shape) -> None:
     """Within the error of a polyhedron at this spacing; positive volume means outward triangles."""
-    measured = measure(surface_of(shape.volume, shape.isovalue, backend))
+    fine = {"max_error": "0.1"} if "max_error" in BACKENDS[backend].options else {}
+    measured = measure(surface_of(shape.volume, shape.isovalue, backend, **fine))
     assert shape.area is not None and shape.enclosed is not None
     assert measured.volume is not None
     assert measured.area == pytest.approx(shape.area, rel=0.08)
