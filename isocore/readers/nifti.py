@@ -82,7 +82,7 @@ def _layout(header: Any, order: Order) -> Layout:
     if code in UNCONTOURABLE:
         raise refuse(UNCONTOURABLE[code], "convert them to numbers first")
     if code not in DATATYPES:
-        raise InputError(f"header names sample type {code}, which NIfTI does not know; it is damaged")
+        raise InputError(f"header names the sample type {code}, which NIfTI does not know; it is damaged")
     sizes = sizes_of(header)
     shape = spatial((*sizes, 1, 1)[:3])
     return Layout(shape, np.dtype(DATATYPES[code]).newbyteorder(order), volumes=math.prod(sizes[3:]))

@@ -100,6 +100,11 @@ def scaling(header: Any) -> tuple[float, float]:
 
 def placement(header: Any) -> Placement:
     """Where the samples lie: by sform, else qform, else the spacing alone."""
+    with np.errstate(invalid="ignore"):  # widening a signalling NaN
+        return _placement(header)
+
+
+def _placement(header: Any) -> Placement:
     spacing, repaired = _spacing(header)
     warnings = ["its header leaves an axis without a spacing; 1 was taken"] if repaired else []
     bare = np.diag([*spacing, 1.0])

@@ -18,7 +18,7 @@ from isocore.readers import nrrd_header
 from isocore.readers.joined import Decoded, Joined
 from isocore.readers.layout import Layout, chosen, load
 from isocore.readers.nrrd_axes import TEXT_ENCODINGS, axes_of, placement
-from isocore.readers.nrrd_header import Head
+from isocore.readers.nrrd_header import LIST, Head
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import Packed, Packing, Source
 from isocore.readers.sample_types import contourable
@@ -64,7 +64,7 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     if named is None:
         return [(path, head.size)]
     words = named.split()
-    if named.startswith("LIST"):
+    if LIST.fullmatch(named):
         names = list(head.files)
     elif _NUMBERED.fullmatch(named):
         names = _numbered(words, layout)
@@ -97,7 +97,7 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
     if encoding in (*TEXT_ENCODINGS, "hex"):
         return Decoded(_from_text(file, start + skipped, encoding, layout), share_bytes)
     if encoding not in _PACKINGS:
-        raise InputError(f"header names the encoding {encoding}, which cannot be read; use raw or gzip")
+        raise InputError(f"header names the encoding {encoding[:20]!a}, which cannot be read; use raw or gzip")
     subject = f"{file.name} " if "datafile" in head.fields else ""
     source = opened.enter_context(Packed(file, packing=_PACKINGS[encoding], start=start, subject=subject))
     if skipped < 0:
@@ -129,6 +129,9 @@ def _from_text(file: Path, start: int, encoding: str, layout: Layout) -> bytes:
     with file.open("rb") as text:
         text.seek(max(start, 0))
         written = text.read().split()
-    if encoding == "hex":
-        return binascii.unhexlify(b"".join(written))
-    return np.array(written, dtype=np.bytes_).astype(layout.dtype).tobytes()
+    try:
+        if encoding == "hex":
+            return binascii.unhexlify(b"".join(written))
+        return np.array(written, dtype=np.bytes_).astype(layout.dtype).tobytes()
+    except (ValueError, OverflowError):
+        raise InputError(f"text is no list of {layout.dtype.name} samples; check its encoding and type") from None

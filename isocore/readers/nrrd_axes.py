@@ -72,7 +72,9 @@ def axes_of(head: Head) -> Axes:
     """Which axes lie in space, which one tells volumes apart, and what is stored."""
     sizes = head.integers("sizes")
     if (len(sizes),) != head.integers("dimension") or min(sizes, default=-1) < 0:
-        raise InputError(f"header gives {head.need('dimension')} axes the sizes {head.need('sizes')}; it is damaged")
+        raise InputError(
+            f"header gives {head.need('dimension')[:20]} axes the sizes {head.need('sizes')[:60]}; it is damaged"
+        )
     kinds = [kind.lower() for kind in head.words("kinds")] or ["???"] * len(sizes)
     directions = head.vectors("spacedirections") or [None] * len(sizes)
     if len(kinds) != len(sizes) or len(directions) != len(sizes):
@@ -92,7 +94,7 @@ def axes_of(head: Head) -> Axes:
     others = [axis for axis in range(len(sizes)) if axis not in in_space[:3] and sizes[axis] != 1]
     if len(others) > 1:
         raise FieldError(
-            f"has {len(others)} axes beyond space ({head.need('sizes')}); one can be chosen from, not more"
+            f"has {len(others)} axes beyond space ({head.need('sizes')[:60]}); one can be chosen from, not more"
         )
     before = sum(axis < others[0] for axis in in_space[:3]) if others else 3
     volumes = sizes[others[0]] if others else 1
@@ -104,7 +106,7 @@ def _sample_type(head: Head) -> np.dtype[Any]:
     if name == "block":
         raise refuse("blocks of bytes", "write them as numbers first")
     if name not in TYPE_CODES:
-        raise InputError(f"header names sample type {name}, which NRRD does not know; it is damaged")
+        raise InputError(f"header names the sample type {name[:20]!a}, which NRRD does not know; it is damaged")
     stored = np.dtype(TYPE_CODES[name])
     endian = head.fields.get("endian", "").lower()
     if endian in ("little", "big"):

@@ -12,6 +12,9 @@ from pathlib import Path
 
 from isocore.errors import InputError
 
+#: The data file of a header whose following lines name data files.
+LIST = re.compile(r"LIST(\s+\d+)?")
+
 #: A header longer than this is none.
 _MOST_BYTES = 1 << 24
 
@@ -97,7 +100,7 @@ def parsed(path: Path) -> Head:
                 name = name.strip().lower().replace(" ", "")
                 if not value.startswith("="):
                     fields[name] = value.strip()
-                    files = [] if name == "datafile" and fields[name].startswith("LIST") else None
+                    files = [] if name == "datafile" and LIST.fullmatch(fields[name]) else None
         return Head(fields, file.tell(), tuple(files or ()))
 
 

@@ -10,10 +10,11 @@ import bz2
 import os
 import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any, Literal, Protocol, Self
+from typing import IO, Any, Literal, Protocol, Self, cast
 
-from isocore.errors import InputError
+from isocore.errors import InputError, one_line
 
 Packing = Literal["none", "gzip", "bzip2"]
 
@@ -89,7 +90,8 @@ class Packed:
 
     def read(self, count: int) -> bytes:
         """The next `count` bytes; fewer where the content ends."""
-        return bytes(self._content.read(count))
+        with self._intact():
+            return bytes(self._content.read(count))
 
     def skip(self, count: int) -> None:
         """Leave out the next `count` bytes."""
@@ -104,32 +106,44 @@ class Packed:
     def fill(self, target: memoryview) -> None:
         """Fill all of `target` (bytes) with what comes next."""
         filled = 0
-        while filled < len(target):
-            try:
+        with self._intact():
+            while filled < len(target):
                 got = self._content.readinto(target[filled : filled + _CHUNK])
-            except EOFError:
-                got = 0
-            if not got:
-                raise self._ends_early(sum(map(len, self._whole())))
-            filled += got
+                if not got:
+                    raise EOFError
+                filled += got
 
     def finish(self) -> None:
         """Look one byte ahead: at the end of the content this checks the last checksum."""
         if self._packing != "none":
-            self._content.read(1)
+            self.read(1)
 
     def rest(self) -> int:
         """How many bytes are left; they are read."""
         if self._packing == "none":
             return self._path.stat().st_size - self._file.tell()
-        return sum(len(chunk) for chunk in iter(lambda: self._content.read(_CHUNK), b""))
+        return sum(len(chunk) for chunk in iter(lambda: self.read(_CHUNK), b""))
 
     def content_bytes(self) -> int:
         """How many bytes the whole content has: a second pass where it is packed."""
         return sum(map(len, self._whole()))
 
+    @contextmanager
+    def _intact(self) -> Iterator[None]:
+        """One message for what inflaters call by many names: content that stops, and content that is damaged."""
+        try:
+            yield
+        except EOFError:
+            raise self._ends_early(self.content_bytes()) from None
+        except (zlib.error, ValueError, OSError, _isal_error()) as error:
+            if self._packing == "none":
+                raise
+            why = f"compressed data is damaged ({one_line(error)})"
+            raise InputError(f"{self._subject}{why}; copy it again") from error
+
     def _ends_early(self, held_bytes: int) -> InputError:
-        return InputError(f"{self._subject}ends early ({held_bytes:,} of {self._promised:,} bytes); {self._advice}")
+        where = f"({held_bytes:,} of {self._promised:,} bytes)" if held_bytes < self._promised else "amid packed data"
+        return InputError(f"{self._subject}ends early {where}; {self._advice}")
 
     def _whole(self) -> Iterator[bytes]:
         """All of the content that can be had, from its first byte, however damaged its end."""
@@ -172,6 +186,15 @@ def _unpacking(file: IO[bytes], packing: Packing) -> Any:
             import gzip as inflater  # type: ignore[no-redef]
         return inflater.GzipFile(fileobj=file, mode="rb")  # type: ignore[no-untyped-call]
     return bz2.BZ2File(file) if packing == "bzip2" else file
+
+
+def _isal_error() -> type[Exception]:
+    """What isal raises; it is no zlib.error."""
+    try:
+        from isal.isal_zlib import error
+    except ImportError:
+        return zlib.error
+    return cast(type[Exception], error)
 
 
 def _memory_bytes() -> float:

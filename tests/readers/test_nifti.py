@@ -125,7 +125,7 @@ def test_samples_without_an_order_are_refused_by_name(scan: Path, code: int, nam
 @pytest.mark.parametrize(
     ("at", "value", "error", "said"),
     [
-        (DATATYPE, struct.pack("<h", 999), InputError, "sample type 999"),
+        (DATATYPE, struct.pack("<h", 999), InputError, "the sample type 999"),
         (DIM, struct.pack("<h", 0), InputError, "counts 0 axes"),
         (DIM, struct.pack("<h", 8), InputError, "counts 8 axes"),
         (DIM + 2, struct.pack("<h", 0), FieldError, "holds 0x5x6 samples"),

@@ -60,7 +60,7 @@ def test_every_encoding_is_read(tmp_path: Path, encoding: str, encode: Callable[
 @pytest.mark.parametrize("name", ["zrl", "rubbish"])
 def test_an_unknown_encoding_is_refused_by_name(tmp_path: Path, name: str) -> None:
     """And another one is proposed."""
-    with pytest.raises(InputError, match=f"encoding {name}, which cannot be read; use raw or gzip"):
+    with pytest.raises(InputError, match=f"encoding '{name}', which cannot be read; use raw or gzip"):
         read(written(tmp_path / "scan.nrrd", encoding=name))
 
 
@@ -202,7 +202,7 @@ def test_interleaved_volumes_are_taken_apart_in_pieces(tmp_path: Path, sizes: tu
             InputError,
             "should hold 2,000,000,000,000 bytes",
         ),
-        ({"type": "quark"}, InputError, "sample type quark"),
+        ({"type": "quark"}, InputError, "the sample type 'quark'"),
         ({"endian": ""}, InputError, "no byte order for its short samples"),
         ({"endian": "middle"}, InputError, "no byte order"),
         ({"spacings": "1 two 3"}, InputError, "spacings is no list of numbers"),
@@ -289,6 +289,7 @@ def test_data_may_lie_in_several_files(tmp_path: Path, named: str, encoding: str
     [
         ("gone.raw", "no gone.raw beside it"),
         ("LIST", "no data file beside it"),
+        ("LISTEN.raw", "no LISTEN.raw beside it"),
         ("slice%d.raw 0 5 1", "no slice0.raw beside it"),
         ("slice%d.raw 5 0 1", "numbers 0 data files"),
         ("slice%d.raw 0 9999999999 1", "numbers 10000000000 data files"),
@@ -312,8 +313,15 @@ def test_missing_data_files_are_named(tmp_path: Path, named: str, said: str) -> 
 @pytest.mark.parametrize("content", ["1 2 3", "1 " * 119 + "many", "1 " * 119 + "40000"])
 def test_text_that_is_no_samples_is_refused(tmp_path: Path, content: str) -> None:
     """Too few, no numbers, or numbers its type cannot hold."""
-    with pytest.raises(InputError):
+    with pytest.raises(InputError, match=r"ends early \(6 of 240 bytes\)|text is no list of int16 samples"):
         read(written(tmp_path / "scan.nrrd", content.encode(), encoding="ascii"))
+
+
+def test_hex_of_half_a_byte_is_refused(tmp_path: Path) -> None:
+    """And so is what is no hex at all."""
+    for content in (b"abc", b"no hex"):
+        with pytest.raises(InputError, match="text is no list of int16 samples"):
+            read(written(tmp_path / "scan.nrrd", content, encoding="hex"))
 
 
 def test_a_header_without_an_end_is_refused(tmp_path: Path) -> None:

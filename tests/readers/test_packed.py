@@ -90,6 +90,27 @@ def test_a_wrong_checksum_is_damage(tmp_path: Path, size: int, inflater: str, mo
         _filled(path, "gzip", size)
 
 
+@pytest.mark.parametrize("inflater", ["isal", "zlib"])
+def test_a_damaged_stream_is_called_so(tmp_path: Path, inflater: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """isal and zlib raise errors of different families."""
+    if inflater == "zlib":
+        monkeypatch.setitem(sys.modules, "isal", None)
+    path = save(tmp_path / "scan.nii.gz", ramp((20, 20, 20)))
+    whole = path.read_bytes()
+    for at in range(30, 60):
+        path.write_bytes(whole[:at] + bytes(8) + whole[at + 8 :])
+        with pytest.raises(InputError, match=f"^{path}: (compressed data is damaged|ends early|header|is no NIfTI)"):
+            read(path)
+
+
+def test_a_stream_without_its_checksum_ends_early(tmp_path: Path) -> None:
+    """All samples are there, but who knows whether they are right."""
+    path = save(tmp_path / "scan.nii.gz", ramp())
+    path.write_bytes(path.read_bytes()[:-3])
+    with pytest.raises(InputError, match="ends early amid packed data; copy it again"):
+        read(path)
+
+
 def test_zeros_after_the_last_member_are_padding(tmp_path: Path) -> None:
     """Tapes and some archives fill up their blocks."""
     path = save(tmp_path / "scan.nii.gz", ramp())
