@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from types import TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import click
 
-from isocore.report import BatchReport, RunReport
+if TYPE_CHECKING:
+    from isocore.pipeline import Job
+    from isocore.report import BatchReport, RunReport
 
 #: A run shorter than this shows no progress bar.
 _PATIENCE_SECONDS = 1.0
@@ -46,9 +48,9 @@ class Progress:
         if self._bar is not None:
             self._bar.stop()
 
-    def at(self, label: str) -> None:
+    def at(self, jobs: list[Job]) -> None:
         """Say what is being worked on."""
-        self._label = label
+        self._label = ", ".join(job.source.name for job in jobs)
         self._update()
 
     def step(self) -> None:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import PATH, Jobs, MaxError, default_threads, read_options, reading_options
+from .options import PATH, Jobs, MaxError, Memory, at_once, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
     from isocore.pipeline import Job
-    from isocore.report import BatchReport, RunReport
+    from isocore.report import BatchReport
 
 FORMATS = ("ply", "obj", "stl")
 REQUIREMENTS = ("watertight", "manifold", "nonempty")
@@ -41,10 +42,16 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.option("--reference/--no-reference", default=True, help="Run marching cubes too, to compare; default on.")
 @click.option("--require", metavar="LIST", help=f"Any of {' '.join(REQUIREMENTS)}; a miss is exit code 3.")
 @click.option("--max-triangles", type=click.IntRange(min=0), metavar="N", help="More is exit code 3.")
-@click.option("-j", "--jobs", type=Jobs(), default=1, help="Inputs at once.")
+@click.option("-j", "--jobs", type=Jobs(), default=1, help="Inputs at once, each in a process of its own.")
+@click.option("--timeout", type=click.FloatRange(min=0, min_open=True), metavar="SECONDS", help="Give up an input.")
+@click.option("--memory-limit", type=Memory(), help="For all inputs at once; default what is free.")
+@click.option("--scheduler", metavar="ADDRESS", help="Send inputs to a dask scheduler instead.")
+@click.option("--if-changed", is_flag=True, help="Skip outputs that are up to date.")
+@click.option("--force", is_flag=True, help="Convert also what --if-changed would skip.")
 @click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Threads inside one input; default all.")
 @click.option("--report", "reports", multiple=True, type=PATH, metavar="FILE", help="By suffix; repeatable.")
 @click.option("--json", "as_json", is_flag=True, help="The JSON report on stdout.")
+@click.option("--depfile", type=PATH, metavar="FILE", help="Write make rules: which outputs need which files.")
 @click.option("--dry-run", is_flag=True, help="Only say what would be done.")
 @click.option("--fail-fast", is_flag=True, help="Stop at the first input that fails.")
 @click.option("-q", "--quiet", is_flag=True, help="Only errors and warnings.")
@@ -61,11 +68,14 @@ def convert(context: click.Context, **chosen: Any) -> None:
     start = perf_counter()
     jobs = planned_jobs(chosen)
     if chosen["dry_run"]:
-        for job in jobs:
-            for target in job.targets:
-                click.echo(f"{job.source} -> {target.output} (isovalue {target.choice})")
+        from isocore.batch import plan_lines
+
+        for line in plan_lines(jobs):
+            click.echo(line)
         return
-    batch = _run(jobs, chosen, start)
+    from .running import run_and_report
+
+    batch = run_and_report(jobs, chosen, start)
     if chosen["as_json"]:
         from isocore.report import render_json
 
@@ -87,8 +97,10 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
         raise click.UsageError("name an INPUT, or a list of them with --files-from")
     format_ = _format(chosen)
     requirements = _requirements(chosen["require"])
-    if chosen["as_json"] and chosen["output"] == Path("-"):
-        raise click.UsageError("-o - and --json both want stdout; use --report FILE")
+    if chosen["output"] == Path("-"):
+        for option in ("as_json", "timeout", "scheduler"):
+            if chosen[option]:
+                raise click.UsageError(f"-o -: does not go with --{option.removeprefix('as_')}; use -o FILE")
 
     from isocore.backends import BACKENDS, Options, check_options
     from isocore.errors import OptionError
@@ -98,7 +110,6 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
     from isocore.report import renderer_for
 
     options = Options(
-        threads=chosen["threads"] or default_threads(),
         cap=chosen["cap"],
         normals=chosen["normals"],
         block_size=int(chosen["block_size"]) if chosen["block_size"] else None,
@@ -124,9 +135,13 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
         reference=chosen["reference"],
         require=requirements,
         max_triangles=chosen["max_triangles"],
+        if_changed=chosen["if_changed"] or chosen["force"],
+        force=chosen["force"],
     )
     naming = Naming(output=chosen["output"], output_dir=chosen["output_dir"], template=chosen["name"])
-    return plan(find_inputs(names), parse_choices(chosen["isovalues"]), pattern, naming, volumes=chosen["volume"])
+    jobs = plan(find_inputs(names), parse_choices(chosen["isovalues"]), pattern, naming, volumes=chosen["volume"])
+    threads = chosen["threads"] or max(1, default_threads() // min(at_once(chosen), len(jobs)))
+    return [replace(job, options=replace(options, threads=threads)) for job in jobs]
 
 
 def _listed(path: Path | None) -> list[Path]:
@@ -168,39 +183,3 @@ def _check_folder(folder: Path) -> None:
             if not part.is_dir():
                 raise click.UsageError(f"{folder}: cannot be a folder, since {part} is a file")
             return
-
-
-def _run(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
-    from isocore.batch import run_jobs
-    from isocore.report import BatchReport, save_report
-
-    from .console import Progress, lines_of, say, say_table
-
-    runs: list[RunReport] = []
-    said: set[str] = set()
-
-    def report() -> BatchReport:
-        batch = BatchReport(tuple(runs), arguments=tuple(sys.argv[1:]), seconds=perf_counter() - start)
-        for path in chosen["reports"]:
-            save_report(batch, path)
-        return batch
-
-    total = sum(len(job.targets) for job in jobs)
-    with Progress(total, wanted=not (chosen["quiet"] or chosen["no_progress"])) as progress:
-        progress.at(str(jobs[0].source))
-        for job, run in run_jobs(jobs, fail_fast=chosen["fail_fast"]):
-            runs.append(run)
-            progress.step()
-            progress.at(str(job.source))
-            for line in lines_of(run):
-                if line not in said:
-                    say(line)
-            said.update(lines_of(run))
-            if chosen["verbose"]:
-                say(f"{run.source} -> {run.output}: {run.chosen}, {run.seconds.get('total', 0):.3f} s")
-            if run.output == str(job.targets[-1].output):
-                report()
-    batch = report()
-    if not chosen["quiet"]:
-        say_table(batch)
-    return batch

@@ -65,6 +65,19 @@ class VolumeChoice(click.ParamType):
         return int(value)
 
 
+class Memory(click.ParamType):
+    """Bytes, as 4G, 500M or a plain number."""
+
+    name = "SIZE"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
+        """The number of bytes."""
+        match = re.fullmatch(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[kmgt]?)(i?b)?", str(value).strip().lower())
+        if not match:
+            self.fail(f"{value}: needs a size, as 500M or 4G", parameter, context)
+        return int(float(match["number"]) * 1024 ** " kmgt".index(match["unit"] or " "))
+
+
 class Jobs(click.ParamType):
     """How many inputs at once."""
 
@@ -113,6 +126,11 @@ def read_options(chosen: dict[str, Any]) -> Any:
 def default_threads() -> int:
     """The processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def at_once(chosen: dict[str, Any]) -> int:
+    """How many inputs are to run at once."""
+    return default_threads() if chosen["jobs"] == "auto" else int(chosen["jobs"])
 
 
 PATH = click.Path(path_type=Path)

@@ -51,6 +51,8 @@ class Job:
     backend: by name, or None for the default of the field.
     space: of the outputs, "native" for the file's own.
     require: names out of compose.REQUIREMENTS; max_triangles: a further one.
+    if_changed: leave outputs alone that are up to date (stamps.py); force: not even those.
+    Both are the batch's business.
     """
 
     source: Path
@@ -63,6 +65,8 @@ class Job:
     reference: bool = True
     require: tuple[str, ...] = ()
     max_triangles: int | None = None
+    if_changed: bool = False
+    force: bool = False
 
 
 class Timer:

@@ -19,8 +19,11 @@ from isocore.report.record import (
     run_as_dict,
     run_from_dict,
 )
+from isocore.report.render_benchmark import render_benchmark
 from isocore.report.render_csv import render_csv
+from isocore.report.render_github import github_annotations
 from isocore.report.render_json import render_json, render_jsonl
+from isocore.report.render_junit import render_junit
 from isocore.report.render_markdown import render_markdown
 from isocore.whole_file import whole_file
 
@@ -31,12 +34,16 @@ RENDERERS: dict[str, Renderer] = {
     ".jsonl": render_jsonl,
     ".csv": render_csv,
     ".md": render_markdown,
+    ".xml": render_junit,
 }
+
+#: Formats that share a suffix with another: chosen by the whole name.
+NAMED_RENDERERS: dict[str, Renderer] = {"bench.json": render_benchmark}
 
 
 def renderer_for(path: Path) -> Renderer:
     """The renderer of this path's suffix. Raises OptionError for any other."""
-    renderer = RENDERERS.get(path.suffix.lower())
+    renderer = NAMED_RENDERERS.get(path.name.lower()) or RENDERERS.get(path.suffix.lower())
     if renderer is None:
         raise OptionError(f"{path}: no such report format; choose one of {' '.join(RENDERERS)}")
     return renderer
@@ -58,7 +65,10 @@ def load_report(path: Path) -> BatchReport:
             raise InputError(f"{path}: is not JSON ({one_line(error)}); name a .json report") from error
         if not isinstance(record, dict) or record.get("schema") != SCHEMA:
             raise InputError(f"{path}: is not a report of schema {SCHEMA}; name a .json report of this version")
-        return batch_from_dict(record)
+        try:
+            return batch_from_dict(record)
+        except (TypeError, KeyError, AttributeError) as error:
+            raise InputError(f"{path}: lacks what a report has ({one_line(error)}); name a .json report") from error
 
 
 def merged(batches: list[BatchReport]) -> BatchReport:
@@ -78,6 +88,7 @@ __all__ = [
     "RunReport",
     "batch_as_dict",
     "batch_from_dict",
+    "github_annotations",
     "load_report",
     "merged",
     "render_json",

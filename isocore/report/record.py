@@ -16,7 +16,7 @@ SCHEMA = 1
 Status = Literal["done", "empty", "skipped", "failed"]
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, weakref_slot=True)
 class RunReport:
     """One output: docs/report.md explains every key. None where a failed run did not get so far."""
 
@@ -85,14 +85,14 @@ def run_as_dict(run: RunReport) -> dict[str, Any]:
     return {item.name: plain(getattr(run, item.name)) for item in fields(RunReport)}
 
 
-def batch_as_dict(batch: BatchReport) -> dict[str, Any]:
-    """The JSON report."""
+def batch_as_dict(batch: BatchReport, *, outputs: bool = True) -> dict[str, Any]:
+    """The JSON report; without its outputs, an empty list stands in their place."""
     return {
         "schema": SCHEMA,
         "tool": plain(batch.tool),
         "host": plain(batch.host),
         "arguments": list(batch.arguments),
-        "outputs": [run_as_dict(run) for run in batch.outputs],
+        "outputs": [run_as_dict(run) for run in batch.outputs] if outputs else [],
         "totals": plain(batch.totals),
     }
 

@@ -1,0 +1,99 @@
+"""Running the jobs of a command: what is shown meanwhile, what is saved after every input, what stands at the end."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from isocore.batch import Batch, run_jobs
+from isocore.depfile import depfile_text
+from isocore.memory import free_bytes
+from isocore.pipeline import Job
+from isocore.report import BatchReport, RunReport, github_annotations, save_report
+from isocore.whole_file import whole_file
+
+from .console import Progress, lines_of, say, say_table
+from .options import at_once
+
+#: A report that took so many times longer to save than has passed since is not saved again yet.
+_SAVING_SHARE = 10
+
+
+class Records:
+    """The records so far, and the report files that show them."""
+
+    def __init__(self, jobs: list[Job], paths: tuple[Path, ...], start: float) -> None:
+        self._places = {(id(job), str(target.output)): n for n, (job, target) in enumerate(_targets(jobs))}
+        self._runs: dict[int, RunReport] = {}
+        self._paths = paths
+        self._start = start
+        self._due = dict.fromkeys(paths, 0.0)
+
+    def add(self, job: Job, run: RunReport) -> None:
+        """Keep a record and save the reports, each as often as it is quick to save."""
+        self._runs[self._places[id(job), run.output]] = run
+        self.save(all_of_them=False)
+
+    def batch(self) -> BatchReport:
+        """The records in the order of the command."""
+        runs = tuple(run for _, run in sorted(self._runs.items()))
+        return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=perf_counter() - self._start)
+
+    def save(self, *, all_of_them: bool = True) -> None:
+        """Rewrite the report files."""
+        for path in self._paths:
+            begin = perf_counter()
+            if all_of_them or begin >= self._due[path]:
+                save_report(self.batch(), path)
+                end = perf_counter()
+                self._due[path] = end + _SAVING_SHARE * (end - begin)
+
+
+def run_and_report(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
+    """Run the jobs of `isocore convert`. Interrupted, the reports hold what was done until then."""
+    records = Records(jobs, chosen["reports"], start)
+    said: set[str] = set()
+    total = sum(len(job.targets) for job in jobs)
+    with Progress(total, wanted=not (chosen["quiet"] or chosen["no_progress"])) as progress:
+        try:
+            for job, run in run_jobs(jobs, _batch(jobs, chosen), at=progress.at):
+                records.add(job, run)
+                progress.step()
+                for line in lines_of(run):
+                    if line not in said:
+                        say(line)
+                said.update(lines_of(run))
+                if chosen["verbose"]:
+                    seconds = run.seconds.get("total", 0.0)
+                    say(f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s")
+        finally:
+            records.save()
+    batch = records.batch()
+    if chosen["depfile"] is not None:
+        with whole_file(chosen["depfile"]) as stream:
+            stream.write(depfile_text(jobs).encode())
+    if os.environ.get("GITHUB_ACTIONS") == "true":
+        for line in github_annotations(batch):
+            say(line)
+    if not chosen["quiet"]:
+        say_table(batch)
+    return batch
+
+
+def _batch(jobs: list[Job], chosen: dict[str, Any]) -> Batch:
+    alone = len(jobs) == 1 and chosen["timeout"] is None
+    limit = chosen["memory_limit"]
+    return Batch(
+        workers=0 if alone else min(at_once(chosen), len(jobs)),
+        seconds_per_job=chosen["timeout"],
+        memory_bytes=free_bytes() if limit is None else limit,
+        scheduler=chosen["scheduler"],
+        fail_fast=chosen["fail_fast"],
+    )
+
+
+def _targets(jobs: list[Job]) -> list[tuple[Job, Any]]:
+    return [(job, target) for job in jobs for target in job.targets]

@@ -1,0 +1,28 @@
+"""A make rule per output, naming every file it was made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from isocore.dependencies import files_of
+from isocore.pipeline import STDOUT, Job
+
+
+def depfile_text(jobs: Iterable[Job]) -> str:
+    """Rules as compilers write them; an input without a rule of its own stays optional, so that it may vanish."""
+    rules: list[str] = []
+    for job in jobs:
+        files = files_of(job.source)
+        outputs = [target.output for target in job.targets if target.output != STDOUT]
+        if outputs:
+            rules.append(f"{' '.join(map(_quoted, outputs))}: {' '.join(map(_quoted, files))}\n")
+            rules += [f"{_quoted(file)}:\n" for file in files]
+    return "".join(rules)
+
+
+def _quoted(path: Path) -> str:
+    text = str(path).replace("$", "$$")
+    for character in " #:":
+        text = text.replace(character, "\\" + character)
+    return text

@@ -1,0 +1,82 @@
+"""What an output was made from, kept in a small file beside it, so that a later run can leave it alone.
+
+`.bone.ply.isocore` beside `bone.ply` holds hashes of the input, the options and the program, the output's own hash
+and the record of the run. An output is up to date when all four hashes hold.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from hashlib import file_digest, sha256
+from pathlib import Path
+from typing import Any
+
+from isocore import __version__
+from isocore.dependencies import files_of
+from isocore.pipeline import STDOUT, Job, Target
+from isocore.report.record import RunReport, run_as_dict, run_from_dict
+from isocore.whole_file import whole_file
+
+#: Options that change neither the surface nor the file.
+_HARMLESS = ("threads",)
+
+
+def stamp_path(output: Path) -> Path:
+    """Where the stamp of an output lies."""
+    return output.with_name(f".{output.name}.isocore")
+
+
+def input_hash(source: Path) -> str:
+    """Of the content of all files that the source consists of; "" where one cannot be read."""
+    whole = sha256()
+    try:
+        for path in files_of(source):
+            with path.open("rb") as stream:
+                whole.update(file_digest(stream, "sha256").digest())
+    except OSError:
+        return ""
+    return whole.hexdigest()
+
+
+def options_hash(job: Job, target: Target) -> str:
+    """Of everything asked of this output that can change it."""
+    options = {key: value for key, value in asdict(job.options).items() if key not in _HARMLESS}
+    asked = [options, asdict(job.read_options), job.format, job.backend, job.space, target.choice]
+    return sha256(json.dumps(asked, default=str).encode()).hexdigest()
+
+
+def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunReport | None]:
+    """Why the output must be made, or "" and the record of the run that made it."""
+    if target.output == STDOUT:
+        return "goes to stdout", None
+    if not target.output.exists():
+        return "no output yet", None
+    if job.force:
+        return "forced", None
+    try:
+        stamp: dict[str, Any] = json.loads(stamp_path(target.output).read_bytes())
+        if stamp["version"] != __version__:
+            return f"made by version {stamp['version']}", None
+        if stamp["options"] != options_hash(job, target):
+            return "options changed", None
+        if not source_hash or stamp["input"] != source_hash:
+            return "input changed", None
+        with target.output.open("rb") as stream:
+            if file_digest(stream, "sha256").hexdigest() != stamp["run"]["sha256"]:
+                return "output changed", None
+        return "", run_from_dict(stamp["run"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return "no record of how the output was made", None
+
+
+def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> None:
+    """Write down what the output was made from."""
+    stamp = {
+        "version": __version__,
+        "input": source_hash,
+        "options": options_hash(job, target),
+        "run": run_as_dict(run),
+    }
+    with whole_file(stamp_path(target.output)) as stream:
+        stream.write(json.dumps(stamp, allow_nan=False).encode())
