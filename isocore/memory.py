@@ -16,6 +16,9 @@ _CGROUP = Path("/sys/fs/cgroup")
 _BASE_BYTES = 60 << 20
 #: Samples, then the surface: of 8-bit noise it can take several times the samples.
 _PER_CONTENT_BYTE = 4
+#: No deflate stream inflates to more than this many times its size, and a scan usually to this many.
+_DEFLATE_LIMIT = 1032
+_USUAL_RATIO = 4
 
 
 def forget_peak() -> None:
@@ -58,7 +61,7 @@ def _content_bytes(file: Path) -> int:
             (inflated,) = struct.unpack("<I", stream.read(4))
     except OSError:
         return 0
-    return int(inflated) if inflated >= size else size * 4
+    return min(int(inflated), size * _DEFLATE_LIMIT) if inflated >= size else size * _USUAL_RATIO
 
 
 def free_bytes() -> int | None:
