@@ -75,6 +75,20 @@ def axes_of(head: Head) -> Axes:
         raise InputError(
             f"header gives {head.need('dimension')[:20]} axes the sizes {head.need('sizes')[:60]}; it is damaged"
         )
+    in_space = _in_space(head, sizes)
+    shape = spatial(tuple(sizes[axis] for axis in in_space[:3]))
+    others = [axis for axis in range(len(sizes)) if axis not in in_space[:3] and sizes[axis] != 1]
+    if len(others) > 1:
+        raise FieldError(
+            f"has {len(others)} axes beyond space ({head.need('sizes')[:60]}); one can be chosen from, not more"
+        )
+    before = sum(axis < others[0] for axis in in_space[:3]) if others else 3
+    volumes = sizes[others[0]] if others else 1
+    return Axes(Layout(shape, _sample_type(head), volumes=volumes, axis=before), tuple(in_space[:3]))
+
+
+def _in_space(head: Head, sizes: tuple[int, ...]) -> list[int]:
+    """The axes that nothing says to lie elsewhere; more than three where the header leaves it open."""
     kinds = [kind.lower() for kind in head.words("kinds")] or ["???"] * len(sizes)
     directions = head.vectors("spacedirections") or [None] * len(sizes)
     if len(kinds) != len(sizes) or len(directions) != len(sizes):
@@ -88,17 +102,9 @@ def axes_of(head: Head) -> Axes:
         for axis, kind in enumerate(kinds)
         if kind in _SPATIAL_KINDS and not (directed and directions[axis] is None)
     ]
-    while len(in_space) > 3 and sizes[in_space[-1]] == 1:
-        in_space.pop()
-    shape = spatial(tuple(sizes[axis] for axis in in_space[:3]))
-    others = [axis for axis in range(len(sizes)) if axis not in in_space[:3] and sizes[axis] != 1]
-    if len(others) > 1:
-        raise FieldError(
-            f"has {len(others)} axes beyond space ({head.need('sizes')[:60]}); one can be chosen from, not more"
-        )
-    before = sum(axis < others[0] for axis in in_space[:3]) if others else 3
-    volumes = sizes[others[0]] if others else 1
-    return Axes(Layout(shape, _sample_type(head), volumes=volumes, axis=before), tuple(in_space[:3]))
+    while len(in_space) > 3 and 1 in (sizes[in_space[0]], sizes[in_space[-1]]):
+        in_space.remove(in_space[-1] if sizes[in_space[-1]] == 1 else in_space[0])
+    return in_space
 
 
 def _sample_type(head: Head) -> np.dtype[Any]:

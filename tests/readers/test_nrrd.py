@@ -163,6 +163,15 @@ def test_the_axis_that_is_not_space_may_be_any(tmp_path: Path, sizes: str, field
         assert np.array_equal(volume_of(path, volume).samples, np.take(spatial, volume, axis=axis))
 
 
+@pytest.mark.parametrize("sizes", ["4 5 6 1", "1 4 5 6", "1 4 5 6 1", "4 5 6 1 1"])
+def test_an_outer_axis_of_one_is_no_axis(tmp_path: Path, sizes: str) -> None:
+    """Where nothing says which axes lie in space; one between others may be a slice, and is left."""
+    fields = {"dimension": str(len(sizes.split())), "sizes": sizes}
+    assert np.array_equal(volume_of(written(tmp_path / "scan.nrrd", **fields)).samples, ramp())
+    with pytest.raises(FieldError, match="holds 4x5x1 samples"):
+        read(written(tmp_path / "scan.nrrd", dimension="4", sizes="4 5 1 6"))
+
+
 @pytest.mark.parametrize("sizes", [(3, 70, 70, 80), (70, 3, 70, 80), (70, 70, 3, 80), (700, 500, 3, 3)])
 def test_interleaved_volumes_are_taken_apart_in_pieces(tmp_path: Path, sizes: tuple[int, ...]) -> None:
     """Also where a file is longer than one piece, and where one slice is."""
