@@ -103,9 +103,7 @@ def cone(sides: int) -> Surface:
 
 
 def joined(a: Surface, b: Surface) -> Surface:
-    return surface(
-        np.vstack([a.vertices, b.vertices]), np.vstack([a.triangles, b.triangles + len(a.vertices)])
-    )
+    return surface(np.vstack([a.vertices, b.vertices]), np.vstack([a.triangles, b.triangles + len(a.vertices)]))
 
 
 def _grid_triangles(around: int, across: int) -> Triangles:

@@ -32,9 +32,7 @@ def test_all_48_orientations_keep_the_outside_outside(affine):
     affine[:3, :3] *= 2
     affine[:3, 3] = (10, -20, 30)
     sphere = shapes_mesh.sphere()
-    placed = Surface(sphere.vertices, sphere.triangles, sphere.vertices.copy()).placed(
-        affine, space="lps", unit="mm"
-    )
+    placed = Surface(sphere.vertices, sphere.triangles, sphere.vertices.copy()).placed(affine, space="lps", unit="mm")
     measured = measure(placed)
     assert measured.volume == pytest.approx(8 * measure(sphere).volume, rel=1e-6)
     outwards = (placed.vertices - affine[:3, 3]) / 2

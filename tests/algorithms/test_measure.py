@@ -102,9 +102,7 @@ def test_a_damaged_torus_is_counted_as_by_hand(data):
         ("two_spheres", 2, 4, 8 * np.pi, 8 / 3 * np.pi, 0.02),
     ],
 )
-def test_a_closed_shape_has_the_numbers_of_its_construction(
-    shape, components, euler, area, volume, tolerance
-):
+def test_a_closed_shape_has_the_numbers_of_its_construction(shape, components, euler, area, volume, tolerance):
     """Components and Euler number exactly; a round shape's area and volume from below."""
     measured = measure(getattr(shapes_mesh, shape)())
     assert (measured.components, measured.euler) == (components, euler)
@@ -176,6 +174,20 @@ def test_the_numbers_do_not_depend_on_the_number_of_threads(kind):
     torus = shapes_mesh.torus(400, 100)
     surface = Surface((torus.vertices * 1.1).astype(kind), torus.triangles[: len(torus.triangles) - 7])
     assert measure(surface, 1) == measure(surface, 2) == measure(surface, 4)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_the_order_of_vertices_and_triangles_changes_no_count(threads):
+    """A large mesh is looked at window by window; shuffled, every window needs every triangle."""
+    torus = shapes_mesh.torus(300, 120)
+    rng = np.random.default_rng(0)
+    order = rng.permutation(len(torus.vertices))
+    triangles = np.argsort(order).astype(np.int32)[rng.permutation(torus.triangles)][100:]
+    expected = measure(shapes_mesh.joined(torus, Surface(torus.vertices, torus.triangles[:7])), threads)
+    assert (expected.components, expected.euler) == (2, 1)
+    shuffled = measure(Surface(torus.vertices[order], triangles), threads)
+    plain = count_slowly(Surface(torus.vertices[order], triangles))
+    assert {name: getattr(shuffled, name) for name in plain} == plain
 
 
 def test_an_index_out_of_range_is_refused():

@@ -135,10 +135,7 @@ def test_a_format_that_cannot_tell_vertices_apart_says_so(tmp_path, format):
     (warning,) = write(far, tmp_path / f"far.{format}")
     assert warning.startswith(str(tmp_path))
     assert "fall on another" in warning
-    assert (
-        write(Surface(sphere.vertices.astype(np.float64), sphere.triangles), tmp_path / f"near.{format}")
-        == ()
-    )
+    assert write(Surface(sphere.vertices.astype(np.float64), sphere.triangles), tmp_path / f"near.{format}") == ()
 
 
 @pytest.mark.parametrize("format", FORMATS)
@@ -190,9 +187,7 @@ def test_a_link_stays_a_link(tmp_path):
     assert (tmp_path / "real" / "mesh.stl").stat().st_size == 84 + 12 * 50
 
 
-@pytest.mark.parametrize(
-    "error", [OSError(28, "No space left on device"), KeyboardInterrupt(), MemoryError()]
-)
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt(), MemoryError()])
 def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, monkeypatch, error):
     """A full disk is an OutputError; an interrupt stays one."""
     target = tmp_path / "mesh.ply"

@@ -1,66 +1,71 @@
-// corners.cpp - A counting sort of corners by vertex. Each thread takes one run of triangles and counts for
-// itself, so that nobody has to wait for anybody; the places then follow from all counts.
+// corners.cpp - One pass over the triangles that reach into a window puts every corner into its vertex's slots.
 #include "surface/corners.hpp"
 
 #include <algorithm>
-#include <stdexcept>
-#include <vector>
-
-#include "common/parallel.hpp"
 
 namespace isocore {
 namespace {
 
-// Each run costs one counter per vertex, so more threads than this cost more memory than they save time.
-constexpr int kMaxRuns = 8;
-
-bool repeats_a_corner(const std::int32_t* t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
-
-template <class Visit>
-void for_each_corner(const std::int32_t* triangles, std::size_t begin, std::size_t end, const Visit& visit) {
-    for (std::size_t t = begin; t < end; ++t) {
-        const std::int32_t* corners = triangles + 3 * t;
-        if (repeats_a_corner(corners)) continue;
-        visit(corners[0], corners[1], corners[2]);
-        visit(corners[1], corners[2], corners[0]);
-        visit(corners[2], corners[0], corners[1]);
-    }
-}
+constexpr std::size_t kSmallWindow = 16384;
 
 }  // namespace
 
-Corners list_corners(const std::int32_t* triangles, std::size_t triangle_count, std::size_t vertex_count,
-                     int threads) {
-    if (triangle_count > UINT32_MAX / 3) throw std::invalid_argument("more than 1.4 billion triangles");
-    const auto runs = static_cast<std::size_t>(std::clamp(threads, 1, kMaxRuns));
-    const auto run_begin = [&](std::size_t run) { return triangle_count * run / runs; };
-    std::vector<Array<std::uint32_t>> place(runs);
-    parallel_for(threads, runs, [&](std::size_t run) {
-        place[run].assign(vertex_count, 0);
-        for_each_corner(triangles, run_begin(run), run_begin(run + 1),
-                        [counts = place[run].data()](std::int32_t v, std::int32_t, std::int32_t) { ++counts[v]; });
-    });
-
-    Corners corners;
-    corners.first.resize(vertex_count + 1);
-    std::uint32_t total = 0;
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        corners.first[v] = total;
-        for (std::size_t run = 0; run < runs; ++run) {
-            const std::uint32_t count = place[run][v];
-            place[run][v] = total;
-            total += count;
+void Corners::look_at(std::size_t begin, std::size_t end) {
+    begin_ = begin;
+    counts_.assign(end - begin, 0);
+    slots_.resize(end - begin);
+    spilled_.clear();
+    // Local copies: a write into a slot could otherwise be one into a member.
+    const auto size = static_cast<std::uint32_t>(end - begin);
+    const auto first = static_cast<std::uint32_t>(begin);
+    std::uint32_t* counts = counts_.data();
+    Slots* slots = slots_.data();
+    const auto add = [=, this](std::int32_t vertex, std::int32_t from, std::int32_t to) {
+        const std::uint32_t index = static_cast<std::uint32_t>(vertex) - first;
+        if (index >= size) return;
+        const std::uint32_t slot = counts[index]++;
+        if (slot >= kSlots) return spill({index, {from, to}});
+        slots[index].from[slot] = from;
+        slots[index].to[slot] = to;
+    };
+    const auto lowest = static_cast<std::int32_t>(begin), highest = static_cast<std::int32_t>(end - 1);
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+        if (blocks_[block].highest < lowest || blocks_[block].lowest > highest) continue;
+        const std::int32_t* corners = triangles_ + 3 * block * kTrianglesPerBlock;
+        const std::int32_t* last = triangles_ + 3 * std::min(triangle_count_, (block + 1) * kTrianglesPerBlock);
+        for (; corners != last; corners += 3) {
+            const std::int32_t a = corners[0], b = corners[1], c = corners[2];
+            if ((a == b) | (b == c) | (c == a)) continue;
+            add(a, b, c);
+            add(b, c, a);
+            add(c, a, b);
         }
     }
-    corners.first[vertex_count] = total;
+    std::stable_sort(spilled_.begin(), spilled_.end(), [](const Spilled& a, const Spilled& b) { return a.index < b.index; });
+}
 
-    corners.opposites.resize(total);
-    parallel_for(threads, runs, [&](std::size_t run) {
-        for_each_corner(triangles, run_begin(run), run_begin(run + 1),
-                        [next = place[run].data(), to = corners.opposites.data()](
-                            std::int32_t v, std::int32_t a, std::int32_t b) { to[next[v]++] = {a, b}; });
-    });
-    return corners;
+// Rare, and kept out of the loop above.
+void Corners::spill(const Spilled& corner) { spilled_.push_back(corner); }
+
+void Corners::copy_link(std::size_t vertex, std::vector<LinkEdge>& link) const {
+    const std::size_t index = vertex - begin_;
+    link.clear();
+    for (std::size_t i = 0; i < std::min<std::size_t>(counts_[index], kSlots); ++i) {
+        link.push_back({slots_[index].from[i], slots_[index].to[i]});
+    }
+    if (counts_[index] <= kSlots) return;
+    auto spilled = std::lower_bound(spilled_.begin(), spilled_.end(), index,
+                                    [](const Spilled& entry, std::size_t wanted) { return entry.index < wanted; });
+    for (; spilled != spilled_.end() && spilled->index == index; ++spilled) link.push_back(spilled->edge);
+}
+
+std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vertex_count, int threads) {
+    std::size_t visits = 0;
+    for (const VertexRange& block : blocks) {
+        visits += static_cast<std::size_t>(block.highest) / kSmallWindow - static_cast<std::size_t>(block.lowest) / kSmallWindow + 1;
+    }
+    if (visits <= 4 * blocks.size()) return kSmallWindow;
+    return vertex_count / static_cast<std::size_t>(std::clamp(threads, 1, 64)) + 1;
 }
 
 }  // namespace isocore

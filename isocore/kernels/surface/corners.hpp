@@ -1,30 +1,71 @@
-// corners.hpp - The flat corner list of a mesh: for each vertex the edges opposite to it.
+// corners.hpp - The corners of a few consecutive vertices, vertex by vertex.
+// A mesh is looked at through windows of vertices, so that a window's corners stay in the cache and every thread
+// has windows of its own. Which triangles reach into a window is known from the range of each block of triangles.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "common/array.hpp"
 
 namespace isocore {
 
-// The edge opposite to a corner, in the direction in which its triangle runs along it.
-struct Opposite {
+constexpr std::size_t kTrianglesPerBlock = 2048;
+
+// The vertices that a block of triangles names.
+struct VertexRange {
+    std::int32_t lowest;
+    std::int32_t highest;
+};
+
+// Eight edges opposite to one vertex, each in the direction in which its triangle runs along it. Most vertices
+// have fewer; then the rest is left as it was.
+constexpr std::size_t kSlots = 8;
+struct alignas(64) Slots {
+    std::array<std::int32_t, kSlots> from;
+    std::array<std::int32_t, kSlots> to;
+};
+
+struct LinkEdge {
     std::int32_t from;
     std::int32_t to;
 };
 
-struct Corners {
-    Array<std::uint32_t> first;  // first[v] .. first[v + 1] are the places of vertex v in `opposites`
-    Array<Opposite> opposites;
+class Corners {
+public:
+    Corners(const std::int32_t* triangles, std::size_t triangle_count, const std::vector<VertexRange>& blocks)
+        : triangles_(triangles), triangle_count_(triangle_count), blocks_(blocks) {}
 
-    const Opposite* begin(std::size_t v) const { return opposites.data() + first[v]; }
-    std::size_t count(std::size_t v) const { return first[v + 1] - first[v]; }
+    // Collects the corners of vertices begin .. end - 1. Triangles with a repeated corner are left out.
+    void look_at(std::size_t begin, std::size_t end);
+
+    std::size_t count(std::size_t vertex) const { return counts_[vertex - begin_]; }
+    // The first eight link edges of a vertex, or all, in the order of their triangles.
+    const Slots& slots(std::size_t vertex) const { return slots_[vertex - begin_]; }
+    // All link edges of a vertex, however many.
+    void copy_link(std::size_t vertex, std::vector<LinkEdge>& link) const;
+
+private:
+    struct Spilled {
+        std::uint32_t index;
+        LinkEdge edge;
+    };
+
+    void spill(const Spilled& corner);
+
+    const std::int32_t* triangles_;
+    std::size_t triangle_count_;
+    const std::vector<VertexRange>& blocks_;
+    std::size_t begin_ = 0;
+    Array<std::uint32_t> counts_;
+    std::vector<Slots> slots_;
+    std::vector<Spilled> spilled_;  // what the slots cannot hold, by vertex
 };
 
-// Triangles with a repeated corner are left out. Indices must have been checked. The order of a vertex's corners
-// is that of their triangles for any number of threads.
-Corners list_corners(const std::int32_t* triangles, std::size_t triangle_count, std::size_t vertex_count,
-                     int threads);
+// How many vertices to look at at once: few where neighbours have neighbouring indices, as in a fresh surface,
+// and many where every window would have to look through the whole mesh.
+std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vertex_count, int threads);
 
 }  // namespace isocore

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "surface/corners.hpp"
 
@@ -15,11 +17,24 @@ struct EdgeCounts {
     std::size_t misoriented = 0;
 };
 
-// True if the link is one ring that all triangles run along in one direction: then every edge at the vertex has
-// exactly two triangles, in opposite directions. False also for rings too long to be looked at cheaply.
-bool is_plain_ring(const Opposite* link, std::size_t count);
+// Looks at one link after the other; what it keeps is only room to work in.
+class LinkInspector {
+public:
+    // Adds the edges around any vertex to `counts`; returns whether the link is one ring or one fan.
+    bool inspect(const std::vector<LinkEdge>& link, EdgeCounts& counts);
 
-// Adds the edges around any vertex to `counts`; returns whether the link is one ring or one fan.
-bool inspect_link(const Opposite* link, std::size_t count, EdgeCounts& counts);
+private:
+    struct Use {
+        std::int32_t neighbour;
+        bool is_from;  // the triangle runs from the vertex in the middle to this neighbour
+    };
+
+    bool count_edges(EdgeCounts& counts);
+    std::size_t root_of(std::int32_t neighbour);
+
+    std::vector<Use> uses_;
+    std::vector<std::int32_t> neighbours_;
+    std::vector<std::size_t> parents_;
+};
 
 }  // namespace isocore
