@@ -1,4 +1,4 @@
-"""`isocore report`: turn JSON reports into tables and CI formats."""
+"""`isocore report`: turn JSON reports into tables, pages and CI formats; compare two."""
 
 from __future__ import annotations
 
@@ -6,26 +6,58 @@ from pathlib import Path
 
 import click
 
-from .options import PATH
+from .options import PATH, Memory
 
 
-@click.command(short_help="Turn JSON reports into tables, pages and CI formats.")
+@click.command(short_help="Turn JSON reports into tables, pages and CI formats; compare two.")
 @click.argument("reports", nargs=-1, required=True, type=PATH, metavar="REPORT...")
-@click.option("--to", "targets", multiple=True, type=PATH, metavar="FILE", help="By suffix; repeatable.")
-def report(reports: tuple[Path, ...], targets: tuple[Path, ...]) -> None:
-    """Show JSON reports as one table, or write them in other formats.
+@click.option("--to", "targets", multiple=True, type=PATH, metavar="FILE", help="By suffix, or bench.json; repeatable.")
+@click.option("--compare", is_flag=True, help="Set the second REPORT beside the first.")
+@click.option(
+    "--fail-if", "limits", multiple=True, metavar="LIMIT", help="As 'triangles>+2%'; exit code 3. Repeatable."
+)
+@click.option("--page-size", type=Memory(), default="16M", show_default=True, help="For surfaces in an HTML page.")
+@click.pass_context
+def report(
+    context: click.Context,
+    reports: tuple[Path, ...],
+    targets: tuple[Path, ...],
+    compare: bool,
+    limits: tuple[str, ...],
+    page_size: int,
+) -> None:
+    """Show JSON reports as one table, write them in other formats, or compare two.
 
     \b
-    isocore report run.json --to run.md --to run.csv
+    isocore report run.json --to run.html --to run.csv
+    isocore report --compare old.json new.json --fail-if 'triangles>+2%' --fail-if 'seconds>+20%'
     """
     from isocore.report import load_report, merged, renderer_for, save_report
+    from isocore.report.compare import parse_limit
 
     from .console import say_table
 
+    parsed = [parse_limit(limit) for limit in limits]
     for target in targets:
         renderer_for(target)
-    batch = merged([load_report(path) for path in reports])
+    if compare and len(reports) != 2:
+        raise click.UsageError(f"--compare needs two reports, the earlier one first, not {len(reports)}")
+    if limits and not compare:
+        raise click.UsageError("--fail-if goes with --compare")
+    batches = [load_report(path) for path in reports]
+    if compare:
+        from isocore.report.compare import HEADINGS, broken_limits, comparison_rows
+
+        from .console import plain_table
+
+        right = frozenset(("isovalue", "triangles", "then", "change", "seconds"))
+        click.echo(plain_table(HEADINGS, comparison_rows(*batches), right))
+        broken = broken_limits(batches[0], batches[1], parsed)
+        for line in broken:
+            click.echo(f"isocore: {line}", err=True)
+        context.exit(3 if broken else 0)
+    batch = merged(batches)
     for target in targets:
-        save_report(batch, target)
+        save_report(batch, target, mesh_bytes=page_size)
     if not targets:
         say_table(batch)

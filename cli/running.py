@@ -25,10 +25,11 @@ _SAVING_SHARE = 10
 class Records:
     """The records so far, and the report files that show them."""
 
-    def __init__(self, jobs: list[Job], paths: tuple[Path, ...], start: float) -> None:
+    def __init__(self, jobs: list[Job], paths: tuple[Path, ...], mesh_bytes: int, start: float) -> None:
         self._places = {(id(job), str(target.output)): n for n, (job, target) in enumerate(_targets(jobs))}
         self._runs: dict[int, RunReport] = {}
         self._paths = paths
+        self._mesh_bytes = mesh_bytes
         self._start = start
         self._due = dict.fromkeys(paths, 0.0)
 
@@ -43,18 +44,18 @@ class Records:
         return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=perf_counter() - self._start)
 
     def save(self, *, all_of_them: bool = True) -> None:
-        """Rewrite the report files."""
+        """Rewrite the report files; a page gets its surfaces at the end only."""
         for path in self._paths:
             begin = perf_counter()
             if all_of_them or begin >= self._due[path]:
-                save_report(self.batch(), path)
+                save_report(self.batch(), path, mesh_bytes=self._mesh_bytes if all_of_them else 0)
                 end = perf_counter()
                 self._due[path] = end + _SAVING_SHARE * (end - begin)
 
 
 def run_and_report(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
     """Run the jobs of `isocore convert`. Interrupted, the reports hold what was done until then."""
-    records = Records(jobs, chosen["reports"], start)
+    records = Records(jobs, chosen["reports"], chosen["page_size"], start)
     said: set[str] = set()
     total = sum(len(job.targets) for job in jobs)
     with Progress(total, wanted=not (chosen["quiet"] or chosen["no_progress"])) as progress:

@@ -22,6 +22,7 @@ from isocore.report.record import (
 from isocore.report.render_benchmark import render_benchmark
 from isocore.report.render_csv import render_csv
 from isocore.report.render_github import github_annotations
+from isocore.report.render_html import MESH_BYTES, render_html
 from isocore.report.render_json import render_json, render_jsonl
 from isocore.report.render_junit import render_junit
 from isocore.report.render_markdown import render_markdown
@@ -33,6 +34,7 @@ RENDERERS: dict[str, Renderer] = {
     ".json": render_json,
     ".jsonl": render_jsonl,
     ".csv": render_csv,
+    ".html": render_html,
     ".md": render_markdown,
     ".xml": render_junit,
 }
@@ -49,9 +51,10 @@ def renderer_for(path: Path) -> Renderer:
     return renderer
 
 
-def save_report(batch: BatchReport, path: Path) -> None:
-    """Write the report whole or not at all."""
-    text = renderer_for(path)(batch)
+def save_report(batch: BatchReport, path: Path, *, mesh_bytes: int = MESH_BYTES) -> None:
+    """Write the report whole or not at all. mesh_bytes bounds the copies of the surfaces in a page."""
+    renderer = renderer_for(path)
+    text = render_html(batch, mesh_bytes=mesh_bytes) if renderer is render_html else renderer(batch)
     with whole_file(path) as stream:
         stream.write(text.encode())
 
@@ -83,6 +86,7 @@ def merged(batches: list[BatchReport]) -> BatchReport:
 
 
 __all__ = [
+    "MESH_BYTES",
     "RENDERERS",
     "BatchReport",
     "RunReport",

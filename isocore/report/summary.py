@@ -36,7 +36,7 @@ def summary_row(run: RunReport) -> tuple[str, ...]:
 
 def own_seconds(run: RunReport) -> float | None:
     """Seconds to compare with the reference's: prepare and extract."""
-    if "extract" not in run.seconds:
+    if run.surface is None or "extract" not in run.seconds:
         return None
     return run.seconds.get("prepare", 0.0) + run.seconds["extract"]
 

@@ -1,0 +1,54 @@
+"""Our own outputs, read back: the reports show what was written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Mesh = tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]
+
+
+def read_mesh(path: Path) -> Mesh | None:
+    """Vertices (v, 3) and triangles (t, 3) of a file that isocore wrote; None where it is gone or another's."""
+    reader = {".ply": _read_ply, ".stl": _read_stl, ".obj": _read_obj}.get(path.suffix.lower())
+    try:
+        return None if reader is None else reader(path.read_bytes())
+    except (OSError, ValueError, KeyError, IndexError):
+        return None
+
+
+def _read_ply(data: bytes) -> Mesh:
+    end = data.index(b"end_header\n") + len(b"end_header\n")
+    counts: dict[str, int] = {}
+    columns: list[Any] = []
+    for line in data[:end].decode("ascii").splitlines():
+        words = line.split()
+        if words[0] == "element":
+            counts[words[1]] = int(words[2])
+        elif words[0] == "property" and words[1] != "list":
+            columns.append((words[2], {"float": "<f4", "double": "<f8"}[words[1]]))
+    rows = np.frombuffer(data, np.dtype(columns), counts["vertex"], end)
+    vertices = np.stack([rows[axis] for axis in "xyz"], axis=1).astype(np.float32)
+    face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+    faces = np.frombuffer(data, face, counts["face"], end + rows.nbytes)
+    return vertices, faces["corners"].astype(np.int32)
+
+
+def _read_stl(data: bytes) -> Mesh:
+    count = int(np.frombuffer(data, "<u4", 1, 80)[0])
+    facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    corners = np.frombuffer(data, facet, count, 84)["corners"].reshape(-1, 3)
+    keys = np.ascontiguousarray(corners).view(np.dtype((np.void, 12))).ravel()
+    _, first, number = np.unique(keys, return_index=True, return_inverse=True)
+    return corners[first].astype(np.float32), number.reshape(-1, 3).astype(np.int32)
+
+
+def _read_obj(data: bytes) -> Mesh:
+    lines = data.splitlines()
+    vertices = [line[2:].split() for line in lines if line.startswith(b"v ")]
+    faces = [[corner.split(b"/")[0] for corner in line[2:].split()] for line in lines if line.startswith(b"f ")]
+    points = np.array(vertices, np.float32).reshape(-1, 3)
+    return points, np.array(faces, np.int32).reshape(-1, 3) - 1

@@ -1,0 +1,52 @@
+"""The report as one page that works offline: totals, table, and each surface to turn."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from isocore.report.mesh_files import read_mesh
+from isocore.report.record import BatchReport, RunReport, batch_as_dict
+from isocore.report.reduce import BYTES_PER_TRIANGLE, MOST_TRIANGLES, packed, reduced
+
+#: Bytes of all reduced surfaces together, unless told otherwise.
+MESH_BYTES = 16 << 20
+_PARTS = Path(__file__).parent / "page"
+_FEWEST_TRIANGLES = 200
+
+
+def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
+    """The page. mesh_bytes bounds what the copies of the surfaces add to it; 0 leaves them out."""
+    record = batch_as_dict(batch)
+    shown = [n for n, run in enumerate(batch.outputs) if (run.surface or {}).get("triangles") and run.output != "-"]
+    left = mesh_bytes
+    for place, number in enumerate(shown):
+        most = min(left // (len(shown) - place) // BYTES_PER_TRIANGLE, MOST_TRIANGLES)
+        if most < _FEWEST_TRIANGLES:
+            most = min(left // BYTES_PER_TRIANGLE, _FEWEST_TRIANGLES)
+        mesh = _copy(batch.outputs[number], most) if most else None
+        if mesh is not None:
+            size = len(mesh["vertices"]) + len(mesh["triangles"])
+            if size <= left:
+                record["outputs"][number]["mesh"] = mesh
+                left -= size
+    parts = {
+        "css": _part("page.css"),
+        "three": _part("three.min.js"),
+        "js": _part("page.js"),
+        "report": json.dumps(record, ensure_ascii=False, allow_nan=False)
+        .replace("</", "<\\/")
+        .replace("<!", "<\\u0021"),
+    }
+    before, *rest = _part("page.html").split("{{")
+    return before + "".join(parts[name] + after for name, after in (part.split("}}", 1) for part in rest))
+
+
+def _copy(run: RunReport, most: int) -> dict[str, Any] | None:
+    mesh = read_mesh(Path(run.output))
+    return None if mesh is None else packed(reduced(mesh, most))
+
+
+def _part(name: str) -> str:
+    return (_PARTS / name).read_text(encoding="utf-8")
