@@ -15,7 +15,7 @@ from isocore.errors import IsocoreError, OptionError
 from isocore.pipeline import STDOUT, Job, Target
 from isocore.readers import SEARCHED, count_volumes, suffix_of
 
-NAME_FIELDS = ("stem", "isovalue", "relpath", "backend", "volume")
+NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "backend", "volume")
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +139,7 @@ def _output(item: Input, choice: str, pattern: Job, naming: Naming, several: boo
     template = naming.template or "{stem}" + ("_v{volume}" if volume is not None else "") + ("_{isovalue}" * several)
     name = template.format(
         stem=item.stem,
+        name=item.path.name,
         isovalue=choice,
         relpath=(item.relative_folder / item.stem).as_posix(),
         backend=pattern.backend or "auto",
@@ -161,7 +162,7 @@ def _check_clashes(jobs: list[Job]) -> None:
             place = _place(target.output)
             if place in taken:
                 both = f"{taken[place]} and {job.source}" if taken[place] != job.source else f"{job.source} twice"
-                raise OptionError(f"{target.output}: would be written by {both}; tell them apart with --name")
+                raise OptionError(f"{target.output}: would be written by {both}; tell them apart with --name {{name}}")
             if place in sources:
                 raise OptionError(f"{target.output}: is also an input; choose another -o or -d")
             taken[place] = job.source
