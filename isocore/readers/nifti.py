@@ -9,22 +9,20 @@ import math
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from isocore.errors import InputError
 from isocore.readers.layout import Layout, chosen, load, spatial
-from isocore.readers.nifti_header import DATATYPES, UNCONTOURABLE, Order, parsed, placement, scaling, sizes_of
+from isocore.readers.nifti_header import LONGEST, has_samples, parsed, placement, sample_type, scaling, sizes_of
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import Packed, packing_by_suffix, packing_of
-from isocore.readers.sample_types import contourable, from_float128, refuse
+from isocore.readers.sample_types import contourable, from_float128
 from isocore.volume import Volume
 
 
 def read_nifti(path: Path, options: ReadOptions) -> Volume:
     """The volume of a NIfTI or Analyze file; `path` is its .nii, its .hdr or its .img."""
     header_path, image_path = _pair(path)
-    header, order = _header(header_path)
-    layout = _layout(header, order)
+    header = _header(header_path)
+    layout = _layout(header)
     volume = chosen(layout, options.volume)
     start = _first_byte(header, image_path)
     with _samples(header_path, image_path) as source:
@@ -32,7 +30,7 @@ def read_nifti(path: Path, options: ReadOptions) -> Volume:
         source.skip(start)
         samples: Any = load(source, layout, volume)
         source.finish()
-    samples, lost = from_float128(samples, order) if samples.dtype.kind == "V" else contourable(samples)
+    samples, lost = from_float128(samples, header.endianness) if samples.dtype.kind == "V" else contourable(samples)
     slope, intercept = scaling(header)
     place = placement(header)
     return Volume(
@@ -48,21 +46,22 @@ def read_nifti(path: Path, options: ReadOptions) -> Volume:
 
 def count_nifti(path: Path, options: ReadOptions) -> int:
     """How many volumes the file holds."""
-    return _layout(*_header(_pair(path)[0])).volumes
+    return _layout(_header(_pair(path)[0])).volumes
 
 
-def _header(path: Path) -> tuple[Any, Order]:
+def _header(path: Path) -> Any:
     with Packed(path, packing=packing_of(path)) as source:
-        return parsed(source.read(540))
+        return parsed(source.read(LONGEST))
 
 
 def _first_byte(header: Any, image_path: Path | None) -> int:
     """Where the samples start in the file that holds them: the image, or the header's own (None)."""
     start = float(header["vox_offset"])
-    smallest = 0 if image_path else header.itemsize + 4
+    smallest = 0
     if image_path is None:
-        if header["magic"].tobytes()[:3] not in (b"n+1", b"n+2"):
+        if not has_samples(header):
             raise InputError("is no NIfTI file (its header has no magic n+1 or n+2); check its suffix")
+        smallest = header.single_vox_offset
         start = start or smallest
     if not (math.isfinite(start) and start >= smallest):
         raise InputError(f"header puts the samples at byte {start:g}, inside itself; it is damaged")
@@ -77,15 +76,11 @@ def _samples(header_path: Path, image_path: Path | None) -> Packed:
     return Packed(image_path, packing=packing_by_suffix(image_path), subject=f"{image_path.name} ")
 
 
-def _layout(header: Any, order: Order) -> Layout:
-    code = int(header["datatype"])
-    if code in UNCONTOURABLE:
-        raise refuse(UNCONTOURABLE[code], "convert them to numbers first")
-    if code not in DATATYPES:
-        raise InputError(f"header names the sample type {code}, which NIfTI does not know; it is damaged")
+def _layout(header: Any) -> Layout:
+    stored = sample_type(header)
     sizes = sizes_of(header)
     shape = spatial((*sizes, 1, 1)[:3])
-    return Layout(shape, np.dtype(DATATYPES[code]).newbyteorder(order), volumes=math.prod(sizes[3:]))
+    return Layout(shape, stored, volumes=math.prod(sizes[3:]))
 
 
 def _pair(path: Path) -> tuple[Path, Path | None]:

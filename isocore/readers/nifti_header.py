@@ -1,76 +1,76 @@
-"""The header of a NIfTI-1, NIfTI-2 or Analyze 7.5 file, and where it puts the samples.
+"""What the header of a NIfTI-1, NIfTI-2 or Analyze 7.5 file says about samples and place.
 
-Field names and offsets follow nifti1.h and nifti2.h (NIfTI Data Format Working Group, 2003 and 2011); of each
-header only the fields that say something about samples or place are read.
+nibabel takes the header apart. Here stand the choice between what a header states twice, the checks that keep
+a damaged one from being believed, and the few fields that nibabel refuses but files have.
 """
 
 from __future__ import annotations
 
-from typing import Any, Literal
+import math
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
 from isocore.readers.layout import Placement
+from isocore.readers.sample_types import refuse
 
-#: Sample types by datatype code; every other code is refused, these in `UNCONTOURABLE` by name.
-DATATYPES = {
-    2: "u1", 4: "i2", 8: "i4", 16: "f4", 64: "f8", 256: "i1", 512: "u2", 768: "u4", 1024: "i8", 1280: "u8",
-    1536: "V16",
+#: Bytes of the longest header.
+LONGEST = 540
+
+#: Sample types without an isosurface, by nibabel's labels.
+_UNCONTOURABLE = {
+    "binary": "single bits", "RGB": "RGB colours", "RGBA": "RGBA colours",
+    "complex64": "complex64", "complex128": "complex128", "complex256": "complex256",
 }  # fmt: skip
-UNCONTOURABLE = {
-    1: "single bits", 32: "complex64", 128: "RGB colours", 1792: "complex128", 2048: "complex256",
-    2304: "RGBA colours",
-}  # fmt: skip
 
-Order = Literal["<", ">"]
-
-#: xyzt_units, the lower three bits: millimetres per unit.
-_MM_PER_UNIT = {1: 1000.0, 2: 1.0, 3: 0.001}
+_MM_PER_UNIT = {"meter": 1000.0, "mm": 1.0, "micron": 0.001}
 
 
-def _header_type(size: int, fields: dict[str, tuple[str, int]]) -> np.dtype[Any]:
-    formats, offsets = zip(*fields.values(), strict=True)
-    return np.dtype({"names": list(fields), "formats": formats, "offsets": offsets, "itemsize": size})
+def parsed(head: bytes) -> Any:
+    """nibabel's header of a file's first bytes; of Analyze, the one with SPM2's scale."""
+    from nibabel.nifti1 import Nifti1Header
+    from nibabel.nifti2 import Nifti2Header
+    from nibabel.spm2analyze import Spm2AnalyzeHeader
 
-
-_NIFTI_1 = _header_type(
-    348,
-    {
-        "dim": ("8i2", 40), "datatype": ("i2", 70), "pixdim": ("8f4", 76), "vox_offset": ("f4", 108),
-        "slope": ("f4", 112), "intercept": ("f4", 116), "xyzt_units": ("u1", 123), "qform_code": ("i2", 252),
-        "sform_code": ("i2", 254), "quatern": ("3f4", 256), "qoffset": ("3f4", 268), "srow": ("(3,4)f4", 280),
-        "magic": ("V4", 344),
-    },
-)  # fmt: skip
-_NIFTI_2 = _header_type(
-    540,
-    {
-        "magic": ("V4", 4), "datatype": ("i2", 12), "dim": ("8i8", 16), "pixdim": ("8f8", 104),
-        "vox_offset": ("i8", 168),
-        "slope": ("f8", 176), "intercept": ("f8", 184), "qform_code": ("i4", 344), "sform_code": ("i4", 348),
-        "quatern": ("3f8", 352), "qoffset": ("3f8", 376), "srow": ("(3,4)f8", 400), "xyzt_units": ("i4", 500),
-    },
-)  # fmt: skip
-
-
-def parsed(head: bytes) -> tuple[Any, Order]:
-    """The header's fields in its first bytes, and its byte order, "<" or ">".
-
-    The field "magic" reads b"n+1" and b"n+2" where samples follow in the same file, b"ni1" and b"ni2" where
-    they lie in an .img, and anything else in Analyze.
-    """
-    orders: tuple[Order, Order] = ("<", ">")
-    for order in orders:
-        size = int(np.frombuffer(head[:4], f"{order}i4")[0]) if len(head) >= 4 else 0
-        layout = {348: _NIFTI_1, 540: _NIFTI_2}.get(size)
-        if layout is None:
-            continue
-        if len(head) < size:
-            raise InputError(f"ends early ({len(head)} of {size} bytes); copy it again")
-        return np.frombuffer(head[:size], layout.newbyteorder(order))[0], order
+    kinds: tuple[Any, Any] = (
+        Nifti1Header if Nifti1Header.may_contain_header(head) else Spm2AnalyzeHeader,  # type: ignore[no-untyped-call]
+        Nifti2Header,
+    )
+    for kind in kinds:
+        # Left to itself, nibabel tells the byte order by the number of axes, which may be damaged.
+        if order := {kind.sizeof_hdr.to_bytes(4, order): order for order in ("little", "big")}.get(head[:4]):
+            if len(head) < kind.sizeof_hdr:
+                raise InputError(f"ends early ({len(head)} of {kind.sizeof_hdr} bytes); copy it again")
+            return kind(head[: kind.sizeof_hdr], order, check=False)
     raise InputError("is no NIfTI or Analyze file (its header has no known size); check its suffix")
+
+
+def has_samples(header: Any) -> bool:
+    """Whether the magic says that the samples follow the header in the same file."""
+    return is_nifti(header) and header["magic"].item() == header.single_magic
+
+
+def is_nifti(header: Any) -> bool:
+    """False for Analyze 7.5, which has no magic and no orientation."""
+    return "magic" in header
+
+
+def sample_type(header: Any) -> np.dtype[Any]:
+    """As stored, with its byte order."""
+    from nibabel.nifti1 import data_type_codes
+
+    known: Any = data_type_codes  # Analyze's are a part of NIfTI's
+    code = int(header["datatype"])
+    label = known.label[code] if code in known else ""
+    if label in _UNCONTOURABLE:
+        raise refuse(_UNCONTOURABLE[label], "convert them to numbers first")
+    # Of 16-byte floats nibabel knows the machine's own at most.
+    stored: np.dtype[Any] = np.dtype("V16" if label == "float128" else known.dtype[code] if label else "V0")
+    if not stored.itemsize:
+        raise InputError(f"header names the sample type {code}, which NIfTI does not know; it is damaged")
+    return stored.newbyteorder(header.endianness)
 
 
 def sizes_of(header: Any) -> tuple[int, ...]:
@@ -78,93 +78,77 @@ def sizes_of(header: Any) -> tuple[int, ...]:
     axes = int(header["dim"][0])
     if not 1 <= axes <= 7:
         raise InputError(f"header counts {axes} axes, where 1 to 7 are possible; it is damaged")
-    sizes = [int(n) for n in header["dim"][1 : axes + 1]]
+    sizes = list(header.get_data_shape())
     sizes[3:] = [n or 1 for n in sizes[3:]]
     if min(sizes) < 0:
         raise InputError(f"header gives an axis {min(sizes)} samples; it is damaged")
     return tuple(sizes)
 
 
-def is_analyze(header: Any) -> bool:
-    """Whether the header is of Analyze 7.5, which has no magic, no orientation and no intercept."""
-    return header["magic"].tobytes()[:3] not in (b"n+1", b"ni1", b"n+2", b"ni2")
-
-
 def scaling(header: Any) -> tuple[float, float]:
     """Slope and intercept; (1, 0) where the header has none."""
-    slope, intercept = float(header["slope"]), float(header["intercept"])
-    if not np.isfinite(slope) or slope == 0:
-        return 1.0, 0.0
-    return slope, intercept if np.isfinite(intercept) and not is_analyze(header) else 0.0
+    if not np.isfinite(header["scl_inter"]):
+        header["scl_inter"] = 0  # nibabel refuses a slope beside an intercept that is no number
+    with np.errstate(all="ignore"):
+        slope, intercept = (float(number or 0.0) for number in header.get_slope_inter())
+    return (slope, intercept) if slope and np.isfinite([slope, intercept]).all() else (1.0, 0.0)
 
 
 def placement(header: Any) -> Placement:
     """Where the samples lie: by sform, else qform, else the spacing alone."""
-    with np.errstate(invalid="ignore"):  # widening a signalling NaN
-        return _placement(header)
-
-
-def _placement(header: Any) -> Placement:
-    spacing, repaired = _spacing(header)
-    warnings = ["its header leaves an axis without a spacing; 1 was taken"] if repaired else []
-    bare = np.diag([*spacing, 1.0])
-    if is_analyze(header):
-        warnings.append("Analyze files state no orientation; left and right may be exchanged")
-        return Placement(bare, "native", "mm", tuple(warnings))
-    affine = bare
-    for name, stated in (("sform", _sform(header)), ("qform", _qform(header, spacing))):
-        if stated is not None and _is_regular(stated):
-            affine = stated
-            break
-        if stated is not None:
-            warnings.append(f"its {name} is singular and was passed over")
-    else:
-        warnings.append("its header states no orientation; the axes were taken as right, anterior, superior")
-    factor = _MM_PER_UNIT.get(int(header["xyzt_units"]) & 7)
+    with np.errstate(all="ignore"):  # a damaged header may hold any number
+        warnings = ["its header leaves an axis without a spacing; 1 was taken"] if _mended(header) else []
+        bare = np.diag([*header["pixdim"][1:4].astype(np.float64), 1.0])
+        if not is_nifti(header):
+            warnings.append("Analyze files state no orientation; left and right may be exchanged")
+            return Placement(bare, "native", "mm", tuple(warnings))
+        affine = bare
+        for name, stated in (("sform", _sform(header)), ("qform", _qform(header))):
+            if stated is not None and _is_regular(stated):
+                affine = stated
+                break
+            if stated is not None:
+                warnings.append(f"its {name} is singular and was passed over")
+        else:
+            warnings.append("its header states no orientation; the axes were taken as right, anterior, superior")
+    factor = _mm_per_unit(header)
     affine[:3] *= factor or 1.0
     return Placement(affine, "ras", "mm" if factor else "", tuple(warnings))
 
 
+def _mended(header: Any) -> bool:
+    """Make each axis' spacing a length; whether one had none."""
+    spacing = np.abs(header["pixdim"][1:4])
+    missing = ~np.isfinite(spacing) | (spacing == 0)
+    header["pixdim"][1:4] = np.where(missing, 1.0, spacing)
+    return bool(missing.any())
+
+
 def _sform(header: Any) -> npt.NDArray[np.float64] | None:
-    if header["sform_code"] <= 0:
-        return None
-    return np.vstack([header["srow"].astype(np.float64), [0.0, 0.0, 0.0, 1.0]])
+    return header.get_sform() if header["sform_code"] > 0 else None
 
 
-def _qform(header: Any, spacing: npt.NDArray[np.float64]) -> npt.NDArray[np.float64] | None:
+def _qform(header: Any) -> npt.NDArray[np.float64] | None:
+    """As nibabel has it, once two things are mended that nifti1.h allows for and get_qform refuses.
+
+    A mirror (pixdim[0]) other than 1 and -1 means 1; a quaternion longer than 1 by rounding is a half turn.
+    """
     if header["qform_code"] <= 0:
         return None
-    affine = np.eye(4)
-    mirror = -1.0 if header["pixdim"][0] < 0 else 1.0
-    affine[:3, :3] = _rotation(header["quatern"]) * (spacing * [1.0, 1.0, mirror])
-    affine[:3, 3] = header["qoffset"]
+    header["pixdim"][0] = -1.0 if header["pixdim"][0] < 0 else 1.0
+    length = math.hypot(*(float(header[f"quatern_{part}"]) for part in "bcd"))
+    for part in "bcd" if length > 1 else "":
+        header[f"quatern_{part}"] = header[f"quatern_{part}"] / length
+    affine: npt.NDArray[np.float64] = header.get_qform()
     return affine
 
 
-def _spacing(header: Any) -> tuple[npt.NDArray[np.float64], bool]:
-    spacing = np.abs(header["pixdim"][1:4].astype(np.float64))
-    missing = ~np.isfinite(spacing) | (spacing == 0)
-    spacing[missing] = 1.0
-    return spacing, bool(missing.any())
+def _mm_per_unit(header: Any) -> float | None:
+    """Of the lower three bits: get_xyzt_units fails where the unit of time beside them is not known."""
+    from nibabel.nifti1 import unit_codes
 
-
-def _rotation(bcd: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """The rotation of the unit quaternion with the parts b, c, d, rounded as the header stores them.
-
-    A half turn has a = 0; what rounding leaves of 1 - b^2 - c^2 - d^2 would tilt it by its square root.
-    """
-    squares = float((bcd.astype(np.float64) ** 2).sum())
-    rest = 1.0 - squares
-    half_turn = rest < 3 * np.finfo(bcd.dtype).eps
-    a = 0.0 if half_turn else np.sqrt(rest)
-    b, c, d = bcd.astype(np.float64) / (np.sqrt(squares) if half_turn else 1.0)
-    return np.array(
-        [
-            [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
-            [2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)],
-            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - c * c - b * b],
-        ]
-    )
+    code = int(header["xyzt_units"]) & 7
+    return _MM_PER_UNIT.get(str(unit_codes.label[code])) if code in unit_codes else None
 
 
 def _is_regular(affine: npt.NDArray[np.float64]) -> bool:

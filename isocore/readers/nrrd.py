@@ -60,7 +60,7 @@ def count_nrrd(path: Path, options: ReadOptions) -> int:
 
 def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     """The files that hold the samples, in order, and the byte of each at which they may start."""
-    named = head.fields.get("datafile")
+    named = head.fields.get("data file")
     if named is None:
         return [(path, head.size)]
     words = named.split()
@@ -98,7 +98,7 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
         return Decoded(_from_text(file, start + skipped, encoding, layout), share_bytes)
     if encoding not in _PACKINGS:
         raise InputError(f"header names the encoding {encoding[:20]!a}, which cannot be read; use raw or gzip")
-    subject = f"{file.name} " if "datafile" in head.fields else ""
+    subject = f"{file.name} " if "data file" in head.fields else ""
     source = opened.enter_context(Packed(file, packing=_PACKINGS[encoding], start=start, subject=subject))
     if skipped < 0:
         skipped = source.content_bytes() - share_bytes
@@ -109,7 +109,7 @@ def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layou
 
 def _skips(head: Head) -> tuple[int, int]:
     """Lines to skip before unpacking, and bytes to skip after it; -1: the samples are the last bytes."""
-    lines, skipped = (sum(head.integers(name)) if name in head.fields else 0 for name in ("lineskip", "byteskip"))
+    lines, skipped = (int(head.fields.get(name, 0)) for name in ("line skip", "byte skip"))
     if lines < 0 or skipped < -1:
         raise InputError(f"header skips {lines} lines and {skipped} bytes, which is not possible; mend it")
     return lines, skipped

@@ -5,6 +5,7 @@ Follows "Definition of NRRD File Format" (Kindlmann, Teem project): per-axis fie
 
 from __future__ import annotations
 
+import io
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -16,20 +17,6 @@ from isocore.readers.layout import Layout, Placement, spatial
 from isocore.readers.nrrd_header import Head
 from isocore.readers.sample_types import refuse
 from isocore.volume import Space
-
-_TYPES = {
-    "i1": "signed char|int8|int8_t",
-    "u1": "uchar|unsigned char|uint8|uint8_t",
-    "i2": "short|short int|signed short|signed short int|int16|int16_t",
-    "u2": "ushort|unsigned short|unsigned short int|uint16|uint16_t",
-    "i4": "int|signed int|int32|int32_t",
-    "u4": "uint|unsigned int|uint32|uint32_t",
-    "i8": "longlong|long long|long long int|signed long long|signed long long int|int64|int64_t",
-    "u8": "ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t",
-    "f4": "float",
-    "f8": "double",
-}
-TYPE_CODES = {name: code for code, names in _TYPES.items() for name in names.split("|")}
 
 _SPACES: dict[str, Space] = {
     "right-anterior-superior": "ras", "ras": "ras", "right-anterior-superior-time": "ras", "rast": "ras",
@@ -70,18 +57,15 @@ class Axes:
 
 def axes_of(head: Head) -> Axes:
     """Which axes lie in space, which one tells volumes apart, and what is stored."""
-    sizes = head.integers("sizes")
-    if (len(sizes),) != head.integers("dimension") or min(sizes, default=-1) < 0:
-        raise InputError(
-            f"header gives {head.need('dimension')[:20]} axes the sizes {head.need('sizes')[:60]}; it is damaged"
-        )
+    dimension, sizes = head.need("dimension"), tuple(head.need("sizes").tolist())
+    listed = " ".join(map(str, sizes))[:60]
+    if len(sizes) != dimension or min(sizes, default=-1) < 0:
+        raise InputError(f"header gives {dimension} axes the sizes {listed}; it is damaged")
     in_space = _in_space(head, sizes)
     shape = spatial(tuple(sizes[axis] for axis in in_space[:3]))
     others = [axis for axis in range(len(sizes)) if axis not in in_space[:3] and sizes[axis] != 1]
     if len(others) > 1:
-        raise FieldError(
-            f"has {len(others)} axes beyond space ({head.need('sizes')[:60]}); one can be chosen from, not more"
-        )
+        raise FieldError(f"has {len(others)} axes beyond space ({listed}); one can be chosen from, not more")
     before = sum(axis < others[0] for axis in in_space[:3]) if others else 3
     volumes = sizes[others[0]] if others else 1
     return Axes(Layout(shape, _sample_type(head), volumes=volumes, axis=before), tuple(in_space[:3]))
@@ -89,8 +73,8 @@ def axes_of(head: Head) -> Axes:
 
 def _in_space(head: Head, sizes: tuple[int, ...]) -> list[int]:
     """The axes that nothing says to lie elsewhere; more than three where the header leaves it open."""
-    kinds = [kind.lower() for kind in head.words("kinds")] or ["???"] * len(sizes)
-    directions = head.vectors("spacedirections") or [None] * len(sizes)
+    kinds = [kind.lower() for kind in head.fields.get("kinds", ())] or ["???"] * len(sizes)
+    directions = _directions(head) or [None] * len(sizes)
     if len(kinds) != len(sizes) or len(directions) != len(sizes):
         raise InputError(f"header describes more or fewer than its {len(sizes)} axes; it is damaged")
     for kind in kinds:
@@ -107,25 +91,43 @@ def _in_space(head: Head, sizes: tuple[int, ...]) -> list[int]:
     return in_space
 
 
+def _directions(head: Head) -> list[list[float] | None]:
+    """Each axis' vector; None where it has none, which pynrrd writes as NaN or as None. Empty without the field."""
+    rows = head.fields.get("space directions", ())
+    return [None if row is None or np.isnan(row).all() else row.tolist() for row in rows]
+
+
 def _sample_type(head: Head) -> np.dtype[Any]:
-    name = head.need("type").lower()
+    head.need("type")
+    name, endian = head.word("type"), head.word("endian")
     if name == "block":
         raise refuse("blocks of bytes", "write them as numbers first")
-    if name not in TYPE_CODES:
-        raise InputError(f"header names the sample type {name[:20]!a}, which NRRD does not know; it is damaged")
-    stored = np.dtype(TYPE_CODES[name])
-    endian = head.fields.get("endian", "").lower()
+    stored = _stored_type(name)
     if endian in ("little", "big"):
         return stored.newbyteorder("<" if endian == "little" else ">")
-    if stored.itemsize > 1 and head.need("encoding").lower() not in TEXT_ENCODINGS:
+    if stored.itemsize > 1 and head.word("encoding") not in TEXT_ENCODINGS:
         raise InputError(f"header gives no byte order for its {name} samples; add endian: little or endian: big")
+    return stored
+
+
+def _stored_type(name: str) -> np.dtype[Any]:
+    """pynrrd's type of that name. It has no public list of them, so a sample is read to see its type."""
+    import nrrd
+
+    one = {"type": name, "endian": "little", "encoding": "raw", "dimension": 1, "sizes": np.ones(1, np.intp)}
+    try:
+        stored: np.dtype[Any] = nrrd.read_data(one, io.BytesIO(bytes(8))).dtype
+    except KeyError:
+        raise InputError(
+            f"header names the sample type {name[:20]!a}, which NRRD does not know; it is damaged"
+        ) from None
     return stored
 
 
 def placement(head: Head, axes: Axes) -> Placement:
     """Where the samples lie: by space directions, else spacings, else the axes' ends."""
     affine = np.eye(4)
-    directions = head.vectors("spacedirections")
+    directions = _directions(head)
     stated = [directions[axis] for axis in axes.spatial] if directions else []
     if stated and None not in stated:
         for column, direction in enumerate(stated):
@@ -133,13 +135,12 @@ def placement(head: Head, axes: Axes) -> Placement:
     else:
         steps, firsts = _steps(head, axes)
         affine[:3, :3], affine[:3, 3] = np.diag(steps), firsts
-    origin = head.vectors("spaceorigin")
-    if origin and origin[0] is not None:
-        affine[:3, 3] = _three(origin[0], "space origin")
-    space = _SPACES.get(head.fields.get("space", "").lower(), "native")
-    units = head.words("spaceunits")[:3]
-    if not units and len(head.words("units")) > max(axes.spatial):
-        units = [head.words("units")[axis] for axis in axes.spatial]
+    if "space origin" in head.fields:
+        affine[:3, 3] = _three(head.fields["space origin"].tolist(), "space origin")
+    space = _SPACES.get(head.word("space"), "native")
+    units = head.fields.get("space units", [])[:3]
+    if not units and len(each := head.fields.get("units", [])) > max(axes.spatial):
+        units = [each[axis] for axis in axes.spatial]
     factors = [_MM_PER_UNIT.get(unit.lower()) for unit in units]
     known = [factor for factor in factors if factor is not None]
     if len(known) != 3:
@@ -156,8 +157,9 @@ def _three(vector: list[float] | None, field: str) -> list[float]:
 
 def _steps(head: Head, axes: Axes) -> tuple[list[float], list[float]]:
     """Spacing of each spatial axis and position of its first sample, 1 and 0 where nothing says more."""
-    spacings, lows, highs = head.numbers("spacings"), head.numbers("axismins"), head.numbers("axismaxs")
-    centerings = head.words("centerings")
+    spacings, lows, highs, centerings = (
+        list(head.fields.get(name, ())) for name in ("spacings", "axis mins", "axis maxs", "centerings")
+    )
     steps, firsts = [], []
     for axis, samples in zip(axes.spatial, axes.layout.shape, strict=True):
         cell = _at(centerings, axis) == "cell"
@@ -169,9 +171,9 @@ def _steps(head: Head, axes: Axes) -> tuple[list[float], list[float]]:
     return steps, firsts
 
 
-def _number(numbers: list[float] | None, axis: int) -> float | None:
-    number = _at(numbers or [], axis)
-    return number if number is not None and math.isfinite(number) else None
+def _number(numbers: list[Any], axis: int) -> float | None:
+    number = _at(numbers, axis)
+    return float(number) if number is not None and math.isfinite(number) else None
 
 
 def _at(entries: list[Any], axis: int) -> Any:

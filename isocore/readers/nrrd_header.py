@@ -1,19 +1,31 @@
-"""The text at the head of a NRRD file: its fields.
+"""The text at the head of a NRRD file: its fields, as pynrrd parses them.
 
-Follows "Definition of NRRD File Format" (Kindlmann, Teem project), versions 1 to 5.
+What pynrrd does not know of "Definition of NRRD File Format" (Kindlmann, Teem project) is put right here, line by
+line, before it sees a field: names in any spelling, key:=value remarks, lists of data files, text beyond ASCII.
 """
 
 from __future__ import annotations
 
 import re
-import shlex
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO, Any
 
-from isocore.errors import InputError
+from isocore.errors import InputError, one_line
 
-#: The data file of a header whose following lines name data files.
+#: Data file of a header whose following lines name data files.
 LIST = re.compile(r"LIST(\s+\d+)?")
+
+#: The fields that say something about samples or place, by their names without blanks. Others are left unread.
+_SPELLING = {
+    name.replace(" ", ""): name
+    for name in (
+        "type", "dimension", "sizes", "encoding", "endian", "line skip", "byte skip", "data file", "kinds",
+        "centerings", "spacings", "axis mins", "axis maxs", "units", "space", "space units", "space origin",
+        "space directions",
+    )
+}  # fmt: skip
 
 #: A header longer than this is none.
 _MOST_BYTES = 1 << 24
@@ -23,88 +35,82 @@ _MOST_BYTES = 1 << 24
 class Head:
     """A header's text.
 
-    fields: by name, in lower case and without blanks ("spacedirections").
+    fields: of pynrrd's types, by the names of the format's definition ("space directions").
     size: bytes of the head.
     files: the lines after "data file: LIST".
     """
 
-    fields: dict[str, str]
+    fields: dict[str, Any]
     size: int
     files: tuple[str, ...]
 
-    def need(self, name: str) -> str:
+    def need(self, name: str) -> Any:
         """A field without which there is nothing to read."""
         if name not in self.fields:
             raise InputError(f"header lacks the field {name}; it is damaged")
         return self.fields[name]
 
-    def integers(self, name: str) -> tuple[int, ...]:
-        """A field's whole numbers."""
-        try:
-            return tuple(int(word) for word in self.need(name).split())
-        except ValueError:
-            raise self._unlike(name, "whole numbers") from None
-
-    def numbers(self, name: str) -> list[float] | None:
-        """A field's numbers, NaN where an axis has none; None without the field."""
-        try:
-            return [float(word) for word in self.fields[name].split()] if name in self.fields else None
-        except ValueError:
-            raise self._unlike(name, "numbers") from None
-
-    def vectors(self, name: str) -> list[list[float] | None] | None:
-        """A field's vectors, (1,0,0) none (0,0,1); None without the field."""
-        if name not in self.fields:
-            return None
-        words = re.findall(r"\([^()]*\)|\S+", self.fields[name])
-        try:
-            return [None if word == "none" else _vector(word) for word in words]
-        except ValueError:
-            raise self._unlike(name, "vectors") from None
-
-    def words(self, name: str) -> list[str]:
-        """A field's words, quoted where they hold blanks; none without the field."""
-        text = self.fields.get(name, "")
-        try:
-            return shlex.split(text) if '"' in text else text.split()
-        except ValueError:
-            raise self._unlike(name, "quoted words") from None
-
-    def _unlike(self, name: str, kind: str) -> InputError:
-        return InputError(f"header field {name} is no list of {kind} ({self.fields[name][:40]!a}); mend it")
-
-
-def _vector(word: str) -> list[float]:
-    if not (word.startswith("(") and word.endswith(")")):
-        raise ValueError(word)
-    return [float(number) for number in word[1:-1].split(",")]
+    def word(self, name: str) -> str:
+        """A field of one word, in lower case; "" without the field."""
+        return str(self.fields.get(name, "")).lower()
 
 
 def parsed(path: Path) -> Head:
     """The head of `path`, up to its first empty line or the file's end."""
-    fields: dict[str, str] = {}
-    files: list[str] | None = None
+    fields: dict[str, Any] = {}
+    files: list[str] = []
     with path.open("rb") as file:
-        if not re.fullmatch(rb"NRRD000[1-5]", file.readline(20).rstrip()):
-            raise InputError("is no NRRD file (it begins with none of NRRD0001 to NRRD0005); check its suffix")
-        while line := file.readline(_MOST_BYTES).rstrip():
-            if file.tell() > _MOST_BYTES:
-                raise InputError("header does not end; it is damaged")
-            text = _decoded(line)
-            if files is not None:
-                files.append(text)
-            elif not text.startswith("#"):
-                name, colon, value = text.partition(":")
-                if not colon:
-                    raise InputError(f"header line is no field: {text[:40]!a}; it is damaged")
-                name = name.strip().lower().replace(" ", "")
-                if not value.startswith("="):
-                    fields[name] = value.strip()
-                    files = [] if name == "datafile" and LIST.fullmatch(fields[name]) else None
-        return Head(fields, file.tell(), tuple(files or ()))
+        magic = _magic(file)
+        for line in _lines(file):
+            if LIST.fullmatch(fields.get("data file", "")):
+                files.append(line)
+                continue
+            name, colon, value = line.partition(":")
+            if not colon:
+                raise InputError(f"header line is no field: {line[:40]!a}; it is damaged")
+            spelled = _SPELLING.get("".join(name.lower().split()))
+            if spelled and not value.startswith("="):
+                fields[spelled] = _value(magic, spelled, value.strip())
+        return Head(fields, file.tell(), tuple(files))
+
+
+def _magic(file: IO[bytes]) -> str:
+    import nrrd
+
+    magic = _decoded(file.readline(20).rstrip())
+    try:
+        nrrd.read_header([magic])
+    except nrrd.errors.NRRDError as error:
+        raise InputError("is no NRRD file (it begins with none of NRRD0001 to NRRD0005); check its suffix") from error
+    return magic
+
+
+def _lines(file: IO[bytes]) -> Iterator[str]:
+    """The head's lines behind the first, without comments."""
+    while line := file.readline(_MOST_BYTES).rstrip():
+        if file.tell() > _MOST_BYTES:
+            raise InputError("header does not end; it is damaged")
+        if not line.startswith(b"#"):
+            yield _decoded(line)
+
+
+def _value(magic: str, name: str, value: str) -> Any:
+    """What pynrrd makes of one field; one at a time, so that a message can name it."""
+    import nrrd
+
+    if name == "space directions":  # blanks inside of a vector split it
+        value = re.sub(r"\([^()]*\)", lambda vector: "".join(vector[0].split()), value)
+    try:
+        if name == "sizes":  # of 4.7 it makes 4, of nan and 1e30 any number
+            value = " ".join(str(int(size)) for size in value.split())
+        return nrrd.read_header([magic, f"{name}: {value}"])[name]
+    except (ValueError, OverflowError, IndexError, nrrd.errors.NRRDError) as error:
+        line, why = f"{name}: {value}"[:60], one_line(error)[:80]
+        raise InputError(f"header line {line!a} cannot be read ({why}); mend it") from error
 
 
 def _decoded(line: bytes) -> str:
+    """UTF-8, else Latin 1: pynrrd would leave out the first letter of μm and make metres of it."""
     try:
         return line.decode("utf-8")
     except UnicodeDecodeError:

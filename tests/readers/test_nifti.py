@@ -77,14 +77,41 @@ def test_any_rotation_comes_out_of_the_qform(tmp_path: Path) -> None:
         assert np.allclose(volume_of(tmp_path / "scan.nii").affine, image.header.get_qform(), atol=2e-6)
 
 
+@pytest.mark.parametrize("image", [nib.Nifti1Image, nib.Nifti2Image])
+def test_a_quaternion_too_long_is_a_half_turn(tmp_path: Path, image: Any) -> None:
+    """As nifti1.h has it; nibabel refuses it, and a mirror that is neither 1 nor -1."""
+    written = image(ramp(), None)
+    written.header.set_qform(np.diag([-2.0, -3.0, 4.0, 1.0]), 1)
+    written.header["sform_code"] = 0
+    written.header["quatern_d"] = 1.001
+    written.header["pixdim"][0] = 0
+    with pytest.raises(ValueError, match="w2 should be positive"):
+        written.header.get_qform()
+    header = written.header.binaryblock
+    (tmp_path / "scan.nii").write_bytes(header + bytes(written.header.single_vox_offset - len(header)))
+    with (tmp_path / "scan.nii").open("ab") as file:
+        file.write(ramp().tobytes(order="F"))
+    volume = volume_of(tmp_path / "scan.nii")
+    assert np.allclose(volume.affine, np.diag([-2.0, -3.0, 4.0, 1.0])) and not volume.warnings
+
+
+@pytest.mark.parametrize("quaternion", [(np.nan, 0, 0), (np.inf, 0, 0)])
+def test_a_quaternion_that_is_no_number_is_passed_over(scan: Path, quaternion: tuple[float, ...]) -> None:
+    """In favour of the spacing alone."""
+    patched(scan, SFORM - 2, struct.pack("<2h3f", 1, 0, *quaternion))
+    volume = volume_of(scan)
+    assert np.allclose(volume.spacing, (1.5, 2.0, 3.0))
+    assert "qform is singular" in volume.warnings[0]
+
+
 @pytest.mark.parametrize(
-    ("code", "factor", "unit"), [(1, 1000.0, "mm"), (2, 1.0, "mm"), (3, 0.001, "mm"), (0, 1.0, "")]
+    ("code", "factor", "unit"), [(1, 1000.0, "mm"), (2, 1.0, "mm"), (3, 0.001, "mm"), (0, 1.0, ""), (5, 1.0, "")]
 )
 def test_lengths_come_in_millimetres(scan: Path, code: int, factor: float, unit: str) -> None:
     """Whatever the file counts in, beside whatever unit of time."""
-    patched(scan, UNITS, bytes([code | 8]))
-    volume = volume_of(scan)
-    assert np.allclose(volume.affine[:3], AFFINE[:3] * factor) and volume.unit == unit
+    for time in (8, 248):
+        volume = volume_of(patched(scan, UNITS, bytes([code | time])))
+        assert np.allclose(volume.affine[:3], AFFINE[:3] * factor) and volume.unit == unit
 
 
 @pytest.mark.parametrize(
@@ -218,6 +245,29 @@ def test_analyze_has_no_orientation(tmp_path: Path) -> None:
     assert np.array_equal(volume.samples, ramp())
     assert np.allclose(volume.affine, np.diag([2.0, 3.0, 4.0, 1.0])) and volume.space == "native"
     assert "state no orientation" in volume.warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("fields", "scale"),
+    [
+        ({}, (1.0, 0.0)),
+        ({"scl_slope": 2.5, "scl_inter": -7}, (2.5, -7.0)),
+        ({"scl_slope": 2.5, "scl_inter": np.nan}, (2.5, 0.0)),
+        ({"cal_max": 50, "cal_min": 10, "glmax": 100, "glmin": 20}, (0.5, 0.0)),
+        ({"cal_max": np.inf, "cal_min": 10, "glmax": 100, "glmin": 20}, (1.0, 0.0)),
+        ({"cal_max": 3e38, "cal_min": -3e38, "glmax": 2**31 - 1, "glmin": -(2**31)}, (1.0, 0.0)),
+    ],
+)
+def test_analyze_is_scaled_as_spm_did(tmp_path: Path, fields: dict[str, float], scale: tuple[float, float]) -> None:
+    """By slope and intercept, else by the calibrated range; nibabel's choice where it reads such a file."""
+    image = nib.AnalyzeImage(ramp(), np.eye(4))
+    image.to_filename(tmp_path / "scan.img")
+    header = nib.Spm2AnalyzeHeader(image.header.binaryblock)
+    for name, value in {"scl_slope": 0, **fields}.items():
+        header[name] = value
+    (tmp_path / "scan.hdr").write_bytes(header.binaryblock)
+    volume = volume_of(tmp_path / "scan.hdr")
+    assert (volume.slope, volume.intercept) == pytest.approx(scale, abs=1e-6)
 
 
 def test_either_file_of_a_pair_may_be_missing(tmp_path: Path) -> None:

@@ -204,7 +204,11 @@ def test_interleaved_volumes_are_taken_apart_in_pieces(tmp_path: Path, sizes: tu
         ({"dimension": "", "sizes": "4 5 6"}, InputError, "lacks the field dimension"),
         ({"sizes": "4 5"}, InputError, "gives 3 axes the sizes 4 5"),
         ({"sizes": "4 -5 6"}, InputError, "gives 3 axes the sizes 4 -5 6"),
-        ({"sizes": "4 five 6"}, InputError, "sizes is no list of whole numbers"),
+        ({"sizes": "4 five 6"}, InputError, "header line 'sizes: 4 five 6' cannot be read"),
+        ({"sizes": "4.7 5 6"}, InputError, "'sizes: 4.7 5 6' cannot be read"),
+        ({"sizes": "4 5 nan"}, InputError, "'sizes: 4 5 nan' cannot be read"),
+        ({"sizes": "4 5 " + "9" * 400}, InputError, "cannot be read"),
+        ({"dimension": "three"}, InputError, "'dimension: three' cannot be read"),
         ({"sizes": "10000 10000 10000"}, InputError, "ends early (240 of 2,000,000,000,000 bytes)"),
         (
             {"sizes": "10000 10000 10000", "encoding": "gzip"},
@@ -214,18 +218,21 @@ def test_interleaved_volumes_are_taken_apart_in_pieces(tmp_path: Path, sizes: tu
         ({"type": "quark"}, InputError, "the sample type 'quark'"),
         ({"endian": ""}, InputError, "no byte order for its short samples"),
         ({"endian": "middle"}, InputError, "no byte order"),
-        ({"spacings": "1 two 3"}, InputError, "spacings is no list of numbers"),
+        ({"spacings": "1 two 3"}, InputError, "header line 'spacings: 1 two 3' cannot be read"),
         ({"spacings": "1 0 3"}, FieldError, "singular"),
-        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0,x)"}, InputError, "no list of vectors"),
-        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0,1"}, InputError, "no list of vectors"),
-        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0)"}, InputError, "no three numbers"),
+        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0,x)"}, InputError, "(0,0,x)' cannot be read"),
+        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0,1"}, InputError, "(0,0,1' cannot be read"),
+        ({"space": "LPS", "space directions": "(1,0,0) (0,1,0) (0,0)"}, InputError, "same number of elements"),
+        ({"space": "LPS", "space directions": "(1,0) (0,1) (0,0)"}, InputError, "no three numbers"),
+        ({"space": "LPS", "space origin": "(1,0,nan)"}, InputError, "no three numbers"),
+        ({"space": "LPS", "space origin": "none"}, InputError, "'space origin: none' cannot be read"),
         (
             {"space": "LPS", "space directions": "(1,0,0) (0,1,0)"},
             InputError,
             "more or fewer than its 3 axes",
         ),
         ({"kinds": "space"}, InputError, "more or fewer than its 3 axes"),
-        ({"units": '"mm" "mm" "mm'}, InputError, "no list of quoted words"),
+        ({"units": '"mm" "mm" "mm'}, InputError, "cannot be read (No closing quotation)"),
         ({"byte skip": "-5"}, InputError, "skips 0 lines and -5 bytes"),
         ({"line skip": "-1"}, InputError, "skips -1 lines"),
         ({"line skip": "9"}, InputError, "skips 9 lines"),
@@ -248,6 +255,21 @@ def test_key_value_pairs_are_no_fields(tmp_path: Path) -> None:
     path = written(tmp_path / "scan.nrrd")
     path.write_bytes(path.read_bytes().replace(b"key:=value", b"byte skip:=7\nsizes:=9 9 9"))
     assert np.array_equal(volume_of(path).samples, ramp())
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        "SpaceDirections: ( 0, 2 ,0) (-3,0.5, 0)\t(0,0,4)",
+        "space directions: (9,0,0) (0,9,0) (0,0,9)\nspace directions: (0,2,0) (-3,0.5,0) (0,0,4)",
+        "space directions: (0,2,0) (-3,0.5,0) (0,0,4)\nlabels: Bob's\nmeasurement frame: (1,0)\nowner: A:B",
+    ],
+)
+def test_fields_are_read_in_any_spelling(tmp_path: Path, field: str) -> None:
+    """The last of two counts, and what says nothing of samples or place may say what it likes."""
+    path = written(tmp_path / "scan.nrrd", space="RAS")
+    path.write_bytes(path.read_bytes().replace(b"key:=value", field.encode()))
+    assert volume_of(path).affine[:3, :3].tolist() == [[0, -3, 0], [2, 0.5, 0], [0, 0, 4]]
 
 
 @pytest.mark.parametrize(("byte_skip", "before", "behind"), [("5", 5, 0), ("-1", 9, 0), ("0", 0, 0), ("5", 5, 8)])
