@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from xml.sax.saxutils import escape, quoteattr
+from html import escape
 
 from isocore.report.record import BatchReport, RunReport
 
@@ -39,14 +39,14 @@ def _case(run: RunReport) -> str:
     elif run.status == "skipped":
         inside.append(f"<skipped message={_quoted(run.message)}/>")
     if run.warnings:
-        inside.append(f"<system-err>{escape(_clean(chr(10).join(run.warnings)))}</system-err>")
+        inside.append(f"<system-err>{escape(_clean(chr(10).join(run.warnings)), quote=False)}</system-err>")
     if not inside:
         return f"    <testcase {name}/>"
     return f"    <testcase {name}>" + "".join(inside) + "</testcase>"
 
 
 def _quoted(text: str) -> str:
-    return quoteattr(_clean(text), {"\n": "&#10;"})
+    return '"' + escape(_clean(text)).replace("\n", "&#10;") + '"'
 
 
 def _clean(text: str) -> str:
