@@ -18,7 +18,8 @@ from isocore.whole_file import whole_file
 from .console import Progress, lines_of, say, say_table
 from .options import at_once
 
-#: A report that took so many times longer to save than has passed since is not saved again yet.
+#: A report that takes longer to save than this is left for so many times as long.
+_QUICK_SECONDS = 0.02
 _SAVING_SHARE = 10
 
 
@@ -50,7 +51,7 @@ class Records:
             if all_of_them or begin >= self._due[path]:
                 save_report(self.batch(), path, mesh_bytes=self._mesh_bytes if all_of_them else 0)
                 end = perf_counter()
-                self._due[path] = end + _SAVING_SHARE * (end - begin)
+                self._due[path] = end + _SAVING_SHARE * max(0.0, end - begin - _QUICK_SECONDS)
 
 
 def run_and_report(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:

@@ -71,7 +71,7 @@ def paired(old: BatchReport, new: BatchReport) -> Iterator[tuple[RunReport | Non
 
 
 def _identity(run: RunReport) -> tuple[Any, ...]:
-    return run.source, run.asked, run.volume, run.backend
+    return run.source, run.asked, run.volume
 
 
 def broken_limits(old: BatchReport, new: BatchReport, limits: list[Limit]) -> list[str]:
