@@ -1,0 +1,38 @@
+// cell_rows.hpp - A row of cells as the sign bits of the four rows of samples around it, 64 cells a word.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/signs.hpp"
+
+namespace isocore::marching_cubes {
+
+using Word = std::uint64_t;
+
+inline std::uint32_t ones(Word word) { return static_cast<std::uint32_t>(std::popcount(word)); }
+
+// The four rows of samples around a row of cells, one word of each, and the same moved on by one sample.
+struct Rows {
+    std::array<const Word*, 4> row;  // (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
+    std::size_t words;
+
+    Rows(const SignGrid& signs, std::size_t j, std::size_t k)
+        : row{signs.row(j, k), signs.row(j + 1, k), signs.row(j, k + 1), signs.row(j + 1, k + 1)}, words(signs.words) {}
+
+    Word here(int n, std::size_t w) const { return row[static_cast<std::size_t>(n)][w]; }
+    Word next(int n, std::size_t w) const { return next_samples(row[static_cast<std::size_t>(n)], w, words); }
+    Word active(std::size_t w, Word valid) const {
+        Word any = 0, all = ~Word{0};
+        for (int n = 0; n < 4; ++n) {
+            const Word a = here(n, w), b = next(n, w);
+            any |= a | b;
+            all &= a & b;
+        }
+        return any & ~all & valid;
+    }
+};
+
+}  // namespace isocore::marching_cubes

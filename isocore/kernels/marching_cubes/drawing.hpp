@@ -1,0 +1,85 @@
+// drawing.hpp - Writes the triangles of rows of cells.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/cell_loops.hpp"
+#include "common/decider.hpp"
+#include "common/edge_vertices.hpp"
+#include "common/grid.hpp"
+#include "marching_cubes/cell_rows.hpp"
+
+namespace isocore::marching_cubes {
+
+// Draws the cells of one row after the other, keeping the vertex numbers of the twelve edges at hand.
+template <class Sample>
+class Drawer {
+  public:
+    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, double isovalue)
+        : samples_(samples), signs_(signs), bases_(bases), isovalue_(isovalue) {}
+
+    std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
+
+    // Writes the triangles of cell row (j, k) from `out` on, and returns the end.
+    std::int32_t* draw(std::size_t j, std::size_t k, std::int32_t* out) {
+        const Rows rows(signs_, j, k);
+        const std::size_t row = j + signs_.dims[1] * k, above = row + signs_.dims[1];
+        // Numbers of the first crossing, of this row of cells, along: x (4 rows), y (2 planes), z (2 rows).
+        std::array<std::uint32_t, 8> base{bases_[row][0],   bases_[row + 1][0], bases_[above][0], bases_[above + 1][0],
+                                          bases_[row][1],   bases_[above][1],   bases_[row][2],   bases_[row + 1][2]};
+        for (std::size_t w = 0; w < signs_.words; ++w) {
+            const Word valid = signs_.valid(w, 1);
+            std::array<Word, 4> here, next;
+            for (int n = 0; n < 4; ++n) {
+                here[static_cast<std::size_t>(n)] = rows.here(n, w);
+                next[static_cast<std::size_t>(n)] = rows.next(n, w);
+            }
+            const std::array<Word, 8> crossed{(here[0] ^ next[0]) & valid, (here[1] ^ next[1]) & valid, (here[2] ^ next[2]) & valid,
+                                              (here[3] ^ next[3]) & valid, here[0] ^ here[1],           here[2] ^ here[3],
+                                              here[0] ^ here[2],           here[1] ^ here[3]};
+            for (Word left = rows.active(w, valid); left != 0; left &= left - 1) {
+                const int x = std::countr_zero(left);
+                unsigned corners = 0;
+                for (unsigned n = 0; n < 4; ++n) corners |= static_cast<unsigned>((here[n] >> x & 1) | (next[n] >> x & 1) << 1) << 2 * n;
+                const cell_loops::Case& drawn = decided(corners, 64 * w + static_cast<std::size_t>(x), j, k);
+                const auto numbers = edge_numbers(base, crossed, x);
+                for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+            }
+            for (std::size_t n = 0; n < 8; ++n) base[n] += ones(crossed[n]);
+        }
+        return out;
+    }
+
+  private:
+    // The vertex numbers of a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
+    static std::array<std::uint32_t, 12> edge_numbers(const std::array<std::uint32_t, 8>& base, const std::array<Word, 8>& crossed, int x) {
+        const Word below = (Word{1} << x) - 1;
+        std::array<std::uint32_t, 12> numbers;
+        for (std::size_t n = 0; n < 4; ++n) numbers[n] = base[n] + ones(crossed[n] & below);
+        for (std::size_t n = 4; n < 8; ++n) {
+            const std::size_t low = 2 * n - 4;
+            numbers[low] = base[n] + ones(crossed[n] & below);
+            numbers[low + 1] = numbers[low] + static_cast<std::uint32_t>(crossed[n] >> x & 1);
+        }
+        return numbers;
+    }
+
+    const cell_loops::Case& decided(unsigned corners, std::size_t i, std::size_t j, std::size_t k) {
+        const cell_loops::Corners& entry = cell_loops::kTable.corners[corners];
+        if (entry.ambiguous == 0) return cell_loops::kTable.cases[entry.first];
+        ++ambiguous_cells;
+        ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
+        return cell_loops::kTable.cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
+    }
+
+    const GridView<Sample>& samples_;
+    const SignGrid& signs_;
+    const std::vector<RowBase>& bases_;
+    double isovalue_;
+};
+
+}  // namespace isocore::marching_cubes
