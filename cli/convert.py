@@ -33,6 +33,7 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.option("-b", "--backend", metavar="NAME", help="The method; default by kind of input.")
 @click.option("--block-size", type=click.Choice(["1", "2", "4", "8", "16", "32"]), help="asc: cells per block.")
 @click.option("--max-error", type=MaxError(), help="asc: in voxels (0.5), world units (0.3mm) or none.")
+@click.option("--topology", type=click.Choice(["faces", "trilinear"]), help="mc: disks in a cell, or tubes too.")
 @click.option(
     "--space", type=click.Choice(["ras", "lps", "las", "native", "index"]), default="native", show_default=True
 )
@@ -115,6 +116,7 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
         normals=chosen["normals"],
         block_size=int(chosen["block_size"]) if chosen["block_size"] else None,
         max_error=chosen["max_error"],
+        topology=chosen["topology"],
     )
     if chosen["backend"] is not None:
         if chosen["backend"] not in BACKENDS:

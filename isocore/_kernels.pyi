@@ -15,10 +15,15 @@ _Bounds = tuple[float, float, float, float, float, float]  # low x, y, z, then h
 
 def supports_v3() -> bool: ...
 
-# marching_cubes: (vertices in index space, triangles, ambiguous faces, ambiguous cells)
+# marching_cubes: (vertices in index space, triangles, ambiguous faces, ambiguous cells, tubes)
 def marching_cubes(
-    samples: _Samples, isovalue: float, below: bool = False, capped: bool = False, threads: int = 1
-) -> tuple[_Real, _Int32, int, int]: ...
+    samples: _Samples,
+    isovalue: float,
+    below: bool = False,
+    capped: bool = False,
+    threads: int = 1,
+    trilinear: bool = False,
+) -> tuple[_Real, _Int32, int, int, int]: ...
 
 # climbing: (vertices in index space, triangles, facts by name)
 def climb(

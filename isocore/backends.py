@@ -22,6 +22,7 @@ from isocore.thinning import prepare_thinning
 from isocore.volume import Volume
 
 Field = Volume | CellMesh
+TOPOLOGIES = ("faces", "trilinear")
 
 __all__ = [
     "BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"
@@ -41,17 +42,23 @@ class Backend:
 
 
 def _prepare_marching_cubes(field: Field, options: Options) -> Extract:
+    trilinear = options.topology == "trilinear"
+    if options.topology not in (None, *TOPOLOGIES):
+        raise OptionError(f"--topology {options.topology}: must be {' or '.join(TOPOLOGIES)}")
     if isinstance(field, CellMesh):
+        if trilinear:
+            raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
         return prepare_marching_cells(field, options)
     volume = field
 
     def extract(isovalue: float) -> Extraction:
         stored = volume.stored_isovalue(isovalue)
-        vertices, triangles, faces, cells = _kernels.marching_cubes(
-            volume.samples, stored, volume.inside_is_below, options.cap, options.threads
+        vertices, triangles, faces, cells, tubes = _kernels.marching_cubes(
+            volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
         )
         surface = placed_surface(volume, vertices, triangles, options)
-        return Extraction(surface, {"ambiguous": {"faces": faces, "cells": cells}})
+        ambiguous = {"faces": faces, "cells": cells} | ({"tubes": tubes} if trilinear else {})
+        return Extraction(surface, {"ambiguous": ambiguous})
 
     return extract
 
@@ -112,6 +119,7 @@ BACKENDS: dict[str, Backend] = {
             title="marching cubes; marching tetrahedra for meshes",
             accepts=(Volume, CellMesh),
             prepare=_prepare_marching_cubes,
+            options=frozenset({"topology"}),
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),
     )

@@ -19,6 +19,8 @@ class Options:
     normals: compute vertex normals.
     isovalues: how many will be asked for, 0 where that is not known; decides nothing but advice.
     index: the thinning index of a mesh, used where it matches.
+    topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
+        trilinear function does.
     """
 
     threads: int = 1
@@ -28,6 +30,7 @@ class Options:
     index: Path | None = None
     block_size: int | None = None
     max_error: str | None = None
+    topology: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

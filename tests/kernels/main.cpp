@@ -4,10 +4,12 @@
 void test_crossing();
 void test_cell_loops();
 void test_marching_cubes();
+void test_tubes();
 
 int main() {
     test_crossing();
     test_cell_loops();
     test_marching_cubes();
+    test_tubes();
     std::puts("kernels: all checks hold");
 }

@@ -13,11 +13,9 @@
 namespace isocore::marching_cubes {
 namespace {
 
-// Every cell draws crossed edges - 2 * loops triangles. Counting one loop per active cell gives a bound that only
-// cells of several loops stay below.
 class Counter {
   public:
-    Counter(const SignGrid& signs, std::vector<RowBase>& bases) : signs_(signs), bases_(bases) {}
+    Counter(const SignGrid& signs, std::vector<RowBase>& bases, bool tubes) : signs_(signs), bases_(bases), tubes_(tubes) {}
 
     // Fills the bases of plane k with counts (number() turns them into numbers) and returns its sums.
     LayerCount count(std::size_t k) const {
@@ -50,20 +48,21 @@ class Counter {
                 crossed += ones((rows.here(a, w) ^ rows.here(b, w)) & valid) + ones((rows.next(a, w) ^ rows.next(b, w)) & valid);
             }
         }
-        return crossed - 2 * active;
+        return tubes_ ? crossed : crossed - 2 * active;
     }
 
     static constexpr std::array<std::array<int, 2>, 4> kAcross{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
     const SignGrid& signs_;
     std::vector<RowBase>& bases_;
+    bool tubes_;
 };
 
 }  // namespace
 
-std::vector<LayerCount> count_layers(const SignGrid& signs, std::vector<RowBase>& bases, int threads) {
+std::vector<LayerCount> count_layers(const SignGrid& signs, std::vector<RowBase>& bases, bool tubes, int threads) {
     bases.resize(signs.dims[1] * signs.dims[2]);
     std::vector<LayerCount> layers(signs.dims[2]);
-    const Counter counter(signs, bases);
+    const Counter counter(signs, bases, tubes);
     parallel_for(threads, layers.size(), [&](std::size_t k) { layers[k] = counter.count(k); });
     return layers;
 }

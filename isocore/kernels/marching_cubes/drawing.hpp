@@ -1,8 +1,10 @@
-// drawing.hpp - Writes the triangles of rows of cells.
+// drawing.hpp - Writes the triangles of rows of cells: every loop a disk, or, with `tubes`, two of a cell's loops one
+// tube where the trilinear function says so. What a cell draws on its faces is the same, so neighbours need not know.
 #pragma once
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,17 +14,20 @@
 #include "common/edge_vertices.hpp"
 #include "common/grid.hpp"
 #include "marching_cubes/cell_rows.hpp"
+#include "marching_cubes/joint.hpp"
+#include "marching_cubes/tubes.hpp"
 
 namespace isocore::marching_cubes {
 
 // Draws the cells of one row after the other, keeping the vertex numbers of the twelve edges at hand.
-template <class Sample>
+template <class Sample, bool tubes>
 class Drawer {
   public:
-    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, double isovalue)
-        : samples_(samples), signs_(signs), bases_(bases), isovalue_(isovalue) {}
+    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, double isovalue,
+           bool below)
+        : samples_(samples), signs_(signs), bases_(bases), isovalue_(isovalue), below_(below) {}
 
-    std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
+    std::size_t ambiguous_faces = 0, ambiguous_cells = 0, tubes_drawn = 0;
 
     // Writes the triangles of cell row (j, k) from `out` on, and returns the end.
     std::int32_t* draw(std::size_t j, std::size_t k, std::int32_t* out) {
@@ -45,9 +50,19 @@ class Drawer {
                 const int x = std::countr_zero(left);
                 unsigned corners = 0;
                 for (unsigned n = 0; n < 4; ++n) corners |= static_cast<unsigned>((here[n] >> x & 1) | (next[n] >> x & 1) << 1) << 2 * n;
-                const cell_loops::Case& drawn = decided(corners, 64 * w + static_cast<std::size_t>(x), j, k);
+                const std::size_t i = 64 * w + static_cast<std::size_t>(x);
+                const cell_loops::Case& drawn = decided(corners, i, j, k);
                 const auto numbers = edge_numbers(base, crossed, x);
-                for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+                if constexpr (tubes) {
+                    if (drawn.loops > 1) {
+                        if (const Tube* tube = find_tube(drawn, corners, {i, j, k})) {
+                            out = write(tube->drawn, numbers, out);
+                            ++tubes_drawn;
+                            continue;
+                        }
+                    }
+                }
+                out = write(drawn, numbers, out);
             }
             for (std::size_t n = 0; n < 8; ++n) base[n] += ones(crossed[n]);
         }
@@ -55,6 +70,12 @@ class Drawer {
     }
 
   private:
+    template <class AnyCase>
+    static std::int32_t* write(const AnyCase& drawn, const std::array<std::uint32_t, 12>& numbers, std::int32_t* out) {
+        for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+        return out;
+    }
+
     // The vertex numbers of a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
     static std::array<std::uint32_t, 12> edge_numbers(const std::array<std::uint32_t, 8>& base, const std::array<Word, 8>& crossed, int x) {
         const Word below = (Word{1} << x) - 1;
@@ -76,10 +97,34 @@ class Drawer {
         return cell_loops::kTable.cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
     }
 
+    // The tube of a cell of several loops, or null. Beyond the border everything is outside, and nothing meets there.
+    const Tube* find_tube(const cell_loops::Case& drawn, unsigned corners, const Dims& cell) const {
+        std::array<double, 8> values;
+        for (std::size_t c = 0; c < 8; ++c) {
+            const Dims at{cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (at[axis] < signs_.pad || at[axis] >= signs_.dims[axis] - signs_.pad) return nullptr;
+            }
+            const auto sample = static_cast<double>(samples_.at(at[0] - signs_.pad, at[1] - signs_.pad, at[2] - signs_.pad));
+            values[c] = below_ ? isovalue_ - sample : sample - isovalue_;
+            if (!std::isfinite(values[c])) return nullptr;
+        }
+        const Joint joint = find_joint(values, corners);
+        const auto number = static_cast<std::size_t>(&drawn - cell_loops::kTable.cases.data());
+        for (std::size_t n = kTubeTable.first[number]; n < kTubeTable.first[number + 1]; ++n) {
+            const Tube& tube = kTubeTable.tubes[n];
+            const bool forward = (tube.one >> joint.a & 1) && (tube.other >> joint.b & 1);
+            const bool backward = (tube.one >> joint.b & 1) && (tube.other >> joint.a & 1);
+            if (forward || backward) return &tube;
+        }
+        return nullptr;
+    }
+
     const GridView<Sample>& samples_;
     const SignGrid& signs_;
     const std::vector<RowBase>& bases_;
     double isovalue_;
+    bool below_;
 };
 
 }  // namespace isocore::marching_cubes

@@ -5,7 +5,6 @@
 #include "marching_cubes/marching_cubes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -22,6 +21,7 @@ namespace {
 struct Slab {
     std::size_t first_plane, end_plane;
     std::size_t first_vertex, first_triangle, triangles;
+    std::size_t ambiguous_faces = 0, ambiguous_cells = 0, tubes = 0;
 };
 
 std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t work_each) {
@@ -29,7 +29,7 @@ std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t 
     std::size_t vertex = 0, triangle = 0, work = work_each;
     for (std::size_t k = 0; k < layers.size(); ++k) {
         if (work >= work_each) {
-            slabs.push_back({k, k, vertex, triangle, 0});
+            slabs.push_back({k, k, vertex, triangle, 0, 0, 0, 0});
             work = 0;
         }
         slabs.back().end_plane = k + 1;
@@ -53,6 +53,29 @@ void close_gaps(const std::vector<Slab>& slabs, Array<std::int32_t>& triangles) 
     triangles.resize(3 * end);
 }
 
+template <bool tubes, class Sample, class Coordinate>
+void draw_slabs(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, const Options& options,
+                std::vector<Slab>& slabs, Mesh<Coordinate>& mesh) {
+    const std::size_t rows = signs.dims[1], planes = signs.dims[2];
+    parallel_for(options.threads, slabs.size(), [&](std::size_t s) {
+        Slab& slab = slabs[s];
+        Drawer<Sample, tubes> drawer(samples, signs, bases, options.isovalue, options.below);
+        Coordinate* vertex = mesh.vertices.data() + 3 * slab.first_vertex;
+        std::int32_t* const first = mesh.triangles.data() + 3 * slab.first_triangle;
+        std::int32_t* triangle = first;
+        for (std::size_t k = slab.first_plane; k < slab.end_plane; ++k) {
+            for (std::size_t j = 0; j < rows; ++j) {
+                vertex = write_row_vertices(samples, signs, options.isovalue, j, k, vertex);
+                if (k + 1 < planes && j + 1 < rows) triangle = drawer.draw(j, k, triangle);
+            }
+        }
+        slab.triangles = static_cast<std::size_t>(triangle - first) / 3;
+        slab.ambiguous_faces = drawer.ambiguous_faces;
+        slab.ambiguous_cells = drawer.ambiguous_cells;
+        slab.tubes = drawer.tubes_drawn;
+    });
+}
+
 }  // namespace
 
 template <class Sample, class Coordinate>
@@ -61,9 +84,8 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
         throw std::invalid_argument("marching cubes needs two samples per axis");
     }
     const SignGrid signs = classify(samples, options.isovalue, options.below, options.capped, options.threads);
-    const std::size_t rows = signs.dims[1], planes = signs.dims[2];
     std::vector<RowBase> bases;
-    const std::vector<LayerCount> layers = count_layers(signs, bases, options.threads);
+    const std::vector<LayerCount> layers = count_layers(signs, bases, options.trilinear, options.threads);
 
     LayerCount total;
     for (const LayerCount& layer : layers) {
@@ -76,26 +98,13 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
     mesh.triangles.resize(3 * total.triangles);
 
     std::vector<Slab> slabs = make_slabs(layers, std::max<std::size_t>(4096, (total.vertices + total.triangles) / 64));
-    std::vector<std::array<std::size_t, 2>> ambiguous(slabs.size());
-    parallel_for(options.threads, slabs.size(), [&](std::size_t s) {
-        Slab& slab = slabs[s];
-        Drawer<Sample> drawer(samples, signs, bases, options.isovalue);
-        Coordinate* vertex = mesh.vertices.data() + 3 * slab.first_vertex;
-        std::int32_t* const first = mesh.triangles.data() + 3 * slab.first_triangle;
-        std::int32_t* triangle = first;
-        for (std::size_t k = slab.first_plane; k < slab.end_plane; ++k) {
-            for (std::size_t j = 0; j < rows; ++j) {
-                vertex = write_row_vertices(samples, signs, options.isovalue, j, k, vertex);
-                if (k + 1 < planes && j + 1 < rows) triangle = drawer.draw(j, k, triangle);
-            }
-        }
-        slab.triangles = static_cast<std::size_t>(triangle - first) / 3;
-        ambiguous[s] = {drawer.ambiguous_faces, drawer.ambiguous_cells};
-    });
+    if (options.trilinear) draw_slabs<true>(samples, signs, bases, options, slabs, mesh);
+    else draw_slabs<false>(samples, signs, bases, options, slabs, mesh);
     close_gaps(slabs, mesh.triangles);
-    for (const auto& [faces, cells] : ambiguous) {
-        mesh.ambiguous_faces += faces;
-        mesh.ambiguous_cells += cells;
+    for (const Slab& slab : slabs) {
+        mesh.ambiguous_faces += slab.ambiguous_faces;
+        mesh.ambiguous_cells += slab.ambiguous_cells;
+        mesh.tubes += slab.tubes;
     }
     return mesh;
 }

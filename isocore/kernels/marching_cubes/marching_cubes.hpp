@@ -18,6 +18,7 @@ struct Options {
     double isovalue = 0;
     bool below = false;   // inside is sample <= isovalue, for volumes with a negative slope
     bool capped = false;  // treat all beyond the border as outside
+    bool trilinear = false;  // a cell's surface has the topology of the trilinear function: tubes, not only disks
     int threads = 1;
 };
 
@@ -27,6 +28,7 @@ struct Mesh {
     Array<std::int32_t> triangles;    // three vertices each
     std::size_t ambiguous_faces = 0;  // decided by the asymptotic decider, counted once per cell they bound
     std::size_t ambiguous_cells = 0;
+    std::size_t tubes = 0;  // cells with two loops joined, at most one pair each; only if `trilinear`
 };
 
 // Instantiated for the eight sample types of volume.py, and for float and double coordinates.

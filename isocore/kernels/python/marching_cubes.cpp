@@ -1,4 +1,4 @@
-// marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads), once per sample type.
+// marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
 #include "marching_cubes/marching_cubes.hpp"
 
 #include <algorithm>
@@ -20,19 +20,20 @@ nb::object run(const VolumeArray<Sample>& samples, const marching_cubes::Options
         mesh = marching_cubes::march<Sample, Coordinate>(grid_view(samples), options);
     }
     return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.ambiguous_faces,
-                          mesh.ambiguous_cells);
+                          mesh.ambiguous_cells, mesh.tubes);
 }
 
 template <class Sample>
 void bind(nb::module_& module) {
     module.def(
         "marching_cubes",
-        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads) {
-            const marching_cubes::Options options{isovalue, below, capped, threads};
+        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, bool trilinear) {
+            const marching_cubes::Options options{isovalue, below, capped, trilinear, threads};
             const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
             return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
         },
-        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1);
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
+        nb::arg("trilinear") = false);
 }
 
 }  // namespace
