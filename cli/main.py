@@ -16,6 +16,8 @@ from isocore.errors import IsocoreError, OptionError
 COMMANDS = {
     "convert": "volumes and meshes to surfaces, one file or a whole folder",
     "info": "what a file holds, and which isovalues make sense",
+    "index": "thin meshes now, and keep the index beside them",
+    "bench": "the papers' tables on your own data",
     "report": "turn JSON reports into tables and CI formats; compare two",
 }
 

@@ -74,10 +74,13 @@ _Part = tuple[
     _Int32, _Int32, _Float64, _Float64, int, tuple[int, ...], int, tuple[int, int, int], int, int
 ]
 
-# build_index: (tetrahedra, hexahedra, edge ids)
-def build_index(points: _Float64, tets: _Int32, hexes: _Int32, values: _Real) -> tuple[_Part, _Part, int]: ...
+# build_index: (tetrahedra, hexahedra, the mesh's id of every point of the index, edge ids)
+def build_index(
+    points: _Float64, tets: _Int32, hexes: _Int32, values: _Real
+) -> tuple[_Part, _Part, _Int32, int]: ...
 
-# propagate: (vertices, triangles, seeds, visited cells); `visited` and `vertex_of_edge` are left as they were
+# propagate: (vertices, triangles, seeds, visited cells); points and values as the index numbers them, `original` their
+# ids in the mesh; `visited` and `vertex_of_edge` are left as they were
 def propagate(
     points: _Float64,
     values: _Real,
@@ -91,7 +94,48 @@ def propagate(
     hex_low: _Float64,
     hex_high: _Float64,
     hexes_visited: _Bytes,
+    original: _Int32,
     vertex_of_edge: _Int32,
     isovalue: float,
     threads: int = 1,
 ) -> tuple[_Float64, _Int32, int, int]: ...
+
+# walk: the search of propagate alone: (tetrahedra, hexahedra, seeds)
+def walk(
+    points: _Float64,
+    values: _Real,
+    tets: _Int32,
+    tet_skeleton: _Int32,
+    tet_low: _Float64,
+    tet_high: _Float64,
+    tets_visited: _Bytes,
+    hexes: _Int32,
+    hex_skeleton: _Int32,
+    hex_low: _Float64,
+    hex_high: _Float64,
+    hexes_visited: _Bytes,
+    original: _Int32,
+    vertex_of_edge: _Int32,
+    isovalue: float,
+) -> tuple[_Int32, _Int32, int]: ...
+
+# thin_grid: (skeleton cells, low, high, extrema)
+def thin_grid(
+    samples: _Samples, below: bool = False, capped: bool = False
+) -> tuple[_Int32, _Float64, _Float64, int]: ...
+
+# propagate_grid: (vertices in index space, triangles, seeds, visited cells, ambiguous faces, ambiguous cells)
+def propagate_grid(
+    samples: _Samples,
+    skeleton: _Int32,
+    low: _Float64,
+    high: _Float64,
+    visited: _Bytes,
+    isovalue: float,
+    below: bool = False,
+    capped: bool = False,
+    threads: int = 1,
+) -> tuple[_Float64, _Int32, int, int, int, int]: ...
+
+# extrema_graph: the cells that the rival of 1995 registers
+def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes) -> _Int32: ...

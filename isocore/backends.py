@@ -16,6 +16,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.climbing import bound_for, check_block_size, climbing_facts
 from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Options
+from isocore.grid_thinning import GridWalker
 from isocore.marching_cells import prepare_marching_cells
 from isocore.surface import Surface, place_fresh
 from isocore.thinning import prepare_thinning
@@ -24,9 +25,7 @@ from isocore.volume import Volume
 Field = Volume | CellMesh
 TOPOLOGIES = ("faces", "trilinear")
 
-__all__ = [
-    "BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"
-]
+__all__ = ["BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +84,19 @@ def _prepare_climbing(volume: Volume, options: Options) -> Extract:
     return extract
 
 
+def _prepare_thinning(field: Field, options: Options) -> Extract:
+    if isinstance(field, CellMesh):
+        return prepare_thinning(field, options)
+    volume, walker = field, GridWalker(field, capped=options.cap)
+    advice = walker.advice(options)
+
+    def extract(isovalue: float) -> Extraction:
+        vertices, triangles, facts = walker.propagate(volume.stored_isovalue(isovalue), options.threads)
+        return Extraction(placed_surface(volume, vertices, triangles, options), facts, advice)
+
+    return extract
+
+
 def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Options) -> Surface:
     """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
     normals = None
@@ -110,8 +122,8 @@ BACKENDS: dict[str, Backend] = {
         Backend(
             name="thinning",
             title="volume thinning",
-            accepts=(CellMesh,),
-            prepare=prepare_thinning,
+            accepts=(CellMesh, Volume),
+            prepare=_prepare_thinning,
             cites="Itoh, Yamaguchi, Koyamada 1996, 2001",
         ),
         Backend(

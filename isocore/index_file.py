@@ -56,6 +56,10 @@ def save_index(path: Path, index: MeshIndex, mesh: CellMesh) -> None:
             checksum = zlib.crc32(array.data, checksum)
             arrays.append(array)
         header[kind] = {**numbers, "arrays": shapes}
+    original = np.ascontiguousarray(index.original, "<i4")
+    header["points"] = len(original)
+    checksum = zlib.crc32(original.data, checksum)
+    arrays.append(original)
     header["checksum"] = checksum
     with whole_file(path) as file:
         file.write(_MAGIC + json.dumps(header).encode() + b"\n")
@@ -81,9 +85,10 @@ def load_index(path: Path, mesh: CellMesh) -> MeshIndex:
             del numbers["arrays"]
             tuples = {name: tuple(value) for name, value in numbers.items() if isinstance(value, list)}
             parts.append(IndexPart(**{**arrays, **numbers, **tuples}))
-        if checksum != header["checksum"]:
+        original = _read(file, "<i4", [header["points"]])
+        if zlib.crc32(original.data, checksum) != header["checksum"]:
             raise InputError(f"{path}: is damaged; write it again with `isocore index`")
-        return MeshIndex(parts[0], parts[1], int(header["edges"]))
+        return MeshIndex(parts[0], parts[1], original, int(header["edges"]))
 
 
 def _what_changed(header: dict[str, Any], mesh: CellMesh) -> str:

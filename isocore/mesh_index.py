@@ -34,10 +34,15 @@ class IndexPart:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeshIndex:
-    """What thinning knows of one field on one mesh. edges: how many edge ids the records name."""
+    """What thinning knows of one field on one mesh.
+
+    original: (p,) int32, the mesh's id of every point that the records name.
+    edges: how many edge ids they name.
+    """
 
     tets: IndexPart
     hexes: IndexPart
+    original: npt.NDArray[np.int32]
     edges: int
 
     @property
@@ -55,4 +60,5 @@ class MeshIndex:
     @property
     def nbytes(self) -> int:
         """Bytes of all arrays."""
-        return sum(a.nbytes for part in self.parts for a in (part.records, part.skeleton, part.low, part.high))
+        arrays = [a for part in self.parts for a in (part.records, part.skeleton, part.low, part.high)]
+        return sum(array.nbytes for array in (*arrays, self.original))

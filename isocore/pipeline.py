@@ -15,6 +15,7 @@ from isocore import compose
 from isocore.backends import BACKENDS, Extract, Field, Options, default_backend, prepare
 from isocore.errors import FieldError, IsocoreError, writing
 from isocore.histogram import histogram
+from isocore.index_file import index_path
 from isocore.isovalue import choose
 from isocore.measure import measure
 from isocore.memory import forget_peak, peak_bytes
@@ -98,7 +99,7 @@ def convert(job: Job) -> Iterator[RunReport]:
         source = timer.timed("read", _read, job)
         spread = timer.timed("read", histogram, source, threads=job.options.threads)
         backend = job.backend or default_backend(type(source))
-        extract = timer.timed("prepare", prepare, source, backend, job.options)
+        extract = timer.timed("prepare", prepare, source, backend, _options(job))
         reference = _Reference(source, backend, job)
         known = compose.field_parts(source, spread) | {"backend": backend}
         for target in job.targets:
@@ -126,6 +127,12 @@ def convert(job: Job) -> Iterator[RunReport]:
     except (IsocoreError, MemoryError) as error:
         for target in job.targets[done:]:
             yield failed(job, target, error, seconds=timer.taken())
+
+
+def _options(job: Job) -> Options:
+    """What the job asks of the backend, and what only the job knows."""
+    index = index_path(job.source)
+    return replace(job.options, isovalues=len(job.targets), index=index if index.is_file() else None)
 
 
 def failed(job: Job, target: Target, error: BaseException, *, seconds: dict[str, float]) -> RunReport:

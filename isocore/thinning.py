@@ -7,7 +7,6 @@ says where it departs.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from threading import Lock
 from typing import Any, TypeAlias, cast
 
@@ -31,19 +30,19 @@ _NOISE = 0.05
 
 def build_index(mesh: CellMesh) -> MeshIndex:
     """Thin the mesh; linear in its cells."""
-    tets, hexes, edges = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
-    return MeshIndex(IndexPart(*tets), IndexPart(*hexes), edges)
+    tets, hexes, original, edges = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
+    return MeshIndex(IndexPart(*tets), IndexPart(*hexes), original, edges)
 
 
 def prepare_thinning(mesh: CellMesh, options: Options) -> Extract:
     """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
     index, warnings = _index_of(mesh, options)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
-    propagate = propagator(mesh, index, options.threads)
+    walker = Walker(mesh, index)
     known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
-        vertices, triangles, seeds, visited = propagate(isovalue)
+        vertices, triangles, seeds, visited = walker.propagate(isovalue, options.threads)
         surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
         search = {**known, "seeds": seeds, "visited": visited, "intersected": visited}
         return Extraction(surface, {"search": search}, warnings)
@@ -61,9 +60,7 @@ def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, tuple[str, .
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh)
     if options.isovalues == 1:
-        warnings.append(
-            "one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`"
-        )
+        warnings.append("one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`")
     if index.extrema > _NOISE * len(mesh.points):
         share = 100 * index.extrema / len(mesh.points)
         warnings.append(
@@ -91,18 +88,25 @@ def _oddities(index: MeshIndex) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def propagator(mesh: CellMesh, index: MeshIndex, threads: int) -> Callable[[float], Walked]:
-    """isovalue -> what the walk finds; one call at a time, since calls share their marks."""
-    visited = [np.zeros(len(part.records), np.uint8) for part in index.parts]
-    vertex_of_edge = np.full(index.edges, -1, np.int32)
-    arrays: list[Any] = []
-    for part, marks in zip(index.parts, visited, strict=True):
-        arrays += [part.records, part.skeleton, part.low, part.high, marks]
-    one_at_a_time = Lock()
-    kernel: Any = _kernels.propagate
+class Walker:
+    """A mesh and its index, ready to walk; one call at a time, since calls share the marks they leave and take back."""
 
-    def propagate(isovalue: float) -> Walked:
-        with one_at_a_time:
-            return cast(Walked, kernel(mesh.points, mesh.values, *arrays, vertex_of_edge, isovalue, threads))
+    def __init__(self, mesh: CellMesh, index: MeshIndex) -> None:
+        visited = [np.zeros(len(part.records), np.uint8) for part in index.parts]
+        self._arrays: list[Any] = [mesh.points[index.original], mesh.values[index.original]]
+        for part, marks in zip(index.parts, visited, strict=True):
+            self._arrays += [part.records, part.skeleton, part.low, part.high, marks]
+        self._arrays += [index.original, np.full(index.edges, -1, np.int32)]
+        self._one_at_a_time = Lock()
 
-    return propagate
+    def propagate(self, isovalue: float, threads: int = 1) -> Walked:
+        """The isosurface, as a full scan finds it."""
+        kernel: Any = _kernels.propagate
+        with self._one_at_a_time:
+            return cast(Walked, kernel(*self._arrays, isovalue, threads))
+
+    def walk(self, isovalue: float) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], int]:
+        """The search alone: tetrahedra and hexahedra visited, in the index's numbers, and seeds."""
+        kernel: Any = _kernels.walk
+        with self._one_at_a_time:
+            return cast("tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], int]", kernel(*self._arrays, isovalue))

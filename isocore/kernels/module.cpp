@@ -10,4 +10,6 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_marching_cells(module);
     isocore::python::bind_statistics(module);
     isocore::python::bind_thinning(module);
+    isocore::python::bind_grid_thinning(module);
+    isocore::python::bind_rivals(module);
 }

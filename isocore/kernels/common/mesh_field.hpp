@@ -27,9 +27,8 @@ struct Field {
         return std::isfinite(value_there) ? static_cast<double>(value_there) : -std::numeric_limits<double>::infinity();
     }
 
-    // Writes where the isosurface crosses the edge between two points.
+    // Writes where the isosurface crosses the edge from point a to point b, which has the higher id in the mesh.
     void cross(std::int32_t a, std::int32_t b, double isovalue, double* out) const {
-        if (a > b) std::swap(a, b);
         const double t = crossing(value(a), value(b), isovalue);
         const double *from = point(a), *to = point(b);
         for (int axis = 0; axis < 3; ++axis) out[axis] = from[axis] + t * (to[axis] - from[axis]);

@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/edge_merger.hpp"
 #include "common/mesh_cases.hpp"
 #include "common/parallel.hpp"
-#include "marching_cells/edge_merger.hpp"
 
 namespace isocore::marching_cells {
 namespace {

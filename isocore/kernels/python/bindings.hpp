@@ -14,5 +14,7 @@ void bind_marching_cells(nanobind::module_& module);
 void bind_statistics(nanobind::module_& module);
 void bind_thinning(nanobind::module_& module);
 void bind_climbing(nanobind::module_& module);
+void bind_grid_thinning(nanobind::module_& module);
+void bind_rivals(nanobind::module_& module);
 
 }  // namespace isocore::python

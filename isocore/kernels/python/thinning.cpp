@@ -37,7 +37,7 @@ nb::object build(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tet
         index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)});
     }
     return nb::make_tuple(part_to_numpy(std::move(index.tets), kTetRecord), part_to_numpy(std::move(index.hexes), kHexRecord),
-                          index.edge_count);
+                          to_numpy(std::move(index.points)), index.edge_count);
 }
 
 template <std::size_t columns>
@@ -46,15 +46,23 @@ thinning::PartView view(const Records<columns>& records, const Vector<std::int32
     return {records.data(), skeleton.data(), low.data(), high.data(), records.shape(0), skeleton.shape(0), visited.data()};
 }
 
+// The arrays of an index, in the order in which Python hands them over.
+#define ISOCORE_INDEX_PARAMETERS                                                                                                           \
+    const Rows<double, 3>&points, const Vector<Value>&values, const Records<kTetRecord>&tets, const Vector<std::int32_t>&tet_skeleton,     \
+        const Vector<double>&tet_low, const Vector<double>&tet_high, const Scratch<std::uint8_t>&tets_visited,                             \
+        const Records<kHexRecord>&hexes, const Vector<std::int32_t>&hex_skeleton, const Vector<double>&hex_low,                            \
+        const Vector<double>&hex_high, const Scratch<std::uint8_t>&hexes_visited, const Vector<std::int32_t>&original,                     \
+        const Scratch<std::int32_t>&vertex_of_edge
+#define ISOCORE_INDEX_VIEW                                                                                                                 \
+    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};                                                         \
+    const thinning::IndexView index {                                                                                                      \
+        view<kTetRecord>(tets, tet_skeleton, tet_low, tet_high, tets_visited),                                                             \
+            view<kHexRecord>(hexes, hex_skeleton, hex_low, hex_high, hexes_visited), original.data(), vertex_of_edge.data()                \
+    }
+
 template <class Value>
-nb::object propagate(const Rows<double, 3>& points, const Vector<Value>& values, const Records<kTetRecord>& tets,
-                     const Vector<std::int32_t>& tet_skeleton, const Vector<double>& tet_low, const Vector<double>& tet_high,
-                     const Scratch<std::uint8_t>& tets_visited, const Records<kHexRecord>& hexes, const Vector<std::int32_t>& hex_skeleton,
-                     const Vector<double>& hex_low, const Vector<double>& hex_high, const Scratch<std::uint8_t>& hexes_visited,
-                     const Scratch<std::int32_t>& vertex_of_edge, double isovalue, int threads) {
-    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
-    const thinning::IndexView index{view<kTetRecord>(tets, tet_skeleton, tet_low, tet_high, tets_visited),
-                                    view<kHexRecord>(hexes, hex_skeleton, hex_low, hex_high, hexes_visited), vertex_of_edge.data()};
+nb::object propagate(ISOCORE_INDEX_PARAMETERS, double isovalue, int threads) {
+    ISOCORE_INDEX_VIEW;
     thinning::Mesh mesh;
     {
         const nb::gil_scoped_release unlocked;
@@ -64,14 +72,31 @@ nb::object propagate(const Rows<double, 3>& points, const Vector<Value>& values,
 }
 
 template <class Value>
-void bind(nb::module_& module) {
-    module.def("build_index", &build<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
-               nb::arg("values").noconvert());
-    module.def("propagate", &propagate<Value>, nb::arg("points").noconvert(), nb::arg("values").noconvert(), nb::arg("tets").noconvert(),
+nb::object walk(ISOCORE_INDEX_PARAMETERS, double isovalue) {
+    ISOCORE_INDEX_VIEW;
+    thinning::Visited visited;
+    {
+        const nb::gil_scoped_release unlocked;
+        visited = thinning::walk(field, index, isovalue);
+    }
+    return nb::make_tuple(to_numpy(std::move(visited.tets)), to_numpy(std::move(visited.hexes)), visited.seeds);
+}
+
+template <class Value, class Function, class... Extra>
+void bind_search(nb::module_& module, const char* name, Function function, Extra... extra) {
+    module.def(name, function, nb::arg("points").noconvert(), nb::arg("values").noconvert(), nb::arg("tets").noconvert(),
                nb::arg("tet_skeleton").noconvert(), nb::arg("tet_low").noconvert(), nb::arg("tet_high").noconvert(),
                nb::arg("tets_visited").noconvert(), nb::arg("hexes").noconvert(), nb::arg("hex_skeleton").noconvert(),
                nb::arg("hex_low").noconvert(), nb::arg("hex_high").noconvert(), nb::arg("hexes_visited").noconvert(),
-               nb::arg("vertex_of_edge").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1);
+               nb::arg("original").noconvert(), nb::arg("vertex_of_edge").noconvert(), nb::arg("isovalue"), extra...);
+}
+
+template <class Value>
+void bind(nb::module_& module) {
+    module.def("build_index", &build<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
+               nb::arg("values").noconvert());
+    bind_search<Value>(module, "propagate", &propagate<Value>, nb::arg("threads") = 1);
+    bind_search<Value>(module, "walk", &walk<Value>);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
-// build.cpp - From a mesh to its index: upright cells, gluing, thinning, ranges of the skeleton.
+// build.cpp - From a mesh to its index: cells in a good order, gluing, thinning, ranges of the skeleton.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "thinning/renumbering.hpp"
 #include "thinning/thinner.hpp"
 #include "thinning/thinning.hpp"
 
@@ -73,14 +74,22 @@ class EdgeNumbers {
     size_t count_ = 0;
 };
 
+// The cells of one kind: turned upright, along a Morton curve, naming points by their new numbers; then glued.
 template <class Cell, class Value>
-Gluing<Cell> glue_upright(const Field<Value>& field, const int32_t* cells, size_t count) {
+Gluing<Cell> glue_in_order(const Field<Value>& field, const int32_t* cells, size_t count, PointNumbers& numbers) {
+    const auto order = morton_order(field.points, field.size, cells, count, Cell::kCorners);
     Array<int32_t> corners(Cell::kCorners * count);
-    for (size_t cell = 0; cell < count; ++cell) {
-        const auto ids = mesh::upright<Cell>(field, cells + Cell::kCorners * cell);
-        std::copy(ids.begin(), ids.end(), corners.begin() + static_cast<std::ptrdiff_t>(Cell::kCorners * cell));
+    int32_t* out = corners.data();
+    for (const std::uint32_t cell : order) {
+        for (const int32_t point : mesh::upright<Cell>(field, cells + Cell::kCorners * cell)) *out++ = numbers(point);
     }
-    return glue<Cell>(std::move(corners), field.size);
+    Gluing<Cell> gluing = glue<Cell>(std::move(corners), field.size);
+    const auto original = [&](int32_t& cell) {
+        if (cell >= 0) cell = static_cast<int32_t>(order[static_cast<size_t>(cell)]);
+    };
+    for (int32_t& cell : gluing.oddities.crowded_cells) original(cell);
+    original(gluing.oddities.collapsed_cell);
+    return gluing;
 }
 
 template <class Cell>
@@ -123,10 +132,11 @@ Part make_part(const Gluing<Cell>& gluing, const std::vector<double>& heights, c
 
 template <class Value>
 Index build(const Field<Value>& field, const Cells& cells) {
-    std::vector<double> heights(field.size);
-    for (size_t id = 0; id < field.size; ++id) heights[id] = field.height(static_cast<int32_t>(id));
-    const Gluing<Tet> tets = glue_upright<Tet>(field, cells.tets, cells.tet_count);
-    const Gluing<Hex> hexes = glue_upright<Hex>(field, cells.hexes, cells.hex_count);
+    PointNumbers points(field.size);
+    const Gluing<Tet> tets = glue_in_order<Tet>(field, cells.tets, cells.tet_count, points);
+    const Gluing<Hex> hexes = glue_in_order<Hex>(field, cells.hexes, cells.hex_count, points);
+    std::vector<double> heights(points.points.size());
+    for (size_t n = 0; n < heights.size(); ++n) heights[n] = field.height(points.points[n]);
     EdgeNumbers numbers(field.size);
     numbers.count(tets);
     numbers.count(hexes);
@@ -134,6 +144,7 @@ Index build(const Field<Value>& field, const Cells& cells) {
     Index index;
     index.tets = make_part(tets, heights, numbers, 0);
     index.hexes = make_part(hexes, heights, numbers, 1);
+    index.points = std::move(points.points);
     index.edge_count = numbers.count();
     return index;
 }

@@ -45,6 +45,7 @@ struct Walked {
 template <class Cell, class Value>
 class Walk {
   public:
+    // Numbers the vertices it comes upon, unless vertex_of_edge is null.
     Walk(const Field<Value>& field, const PartView& part, int32_t* vertex_of_edge, double isovalue, Array<Vertex>& vertices)
         : field_(field), part_(part), vertex_of_edge_(vertex_of_edge), inside_(isovalue, false), vertices_(vertices) {}
 
@@ -91,6 +92,7 @@ class Walk {
             const int32_t twin = twins[std::countr_zero(left)];
             if (twin >= 0) visit(twin / static_cast<int32_t>(Cell::kFaces));
         }
+        if (vertex_of_edge_ == nullptr) return;
         for (Mask left = mesh::kCrossedEdges<Cell>[signs]; left != 0; left &= left - 1) {
             const auto n = static_cast<size_t>(std::countr_zero(left));
             int32_t& vertex = vertex_of_edge_[edges[n]];
@@ -208,7 +210,11 @@ Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalu
     mesh.triangles.resize(3 * triangles);
     parallel_for(threads, crossed.size() / kChunk + 1, [&](size_t chunk) {
         const size_t end = std::min(crossed.size(), (chunk + 1) * kChunk);
-        for (size_t n = chunk * kChunk; n < end; ++n) field.cross(crossed[n].a, crossed[n].b, isovalue, mesh.vertices.data() + 3 * n);
+        for (size_t n = chunk * kChunk; n < end; ++n) {
+            const auto [a, b, edge] = crossed[n];
+            const bool ascending = index.points[a] < index.points[b];
+            field.cross(ascending ? a : b, ascending ? b : a, isovalue, mesh.vertices.data() + 3 * n);
+        }
     });
     drawn_tets.draw(mesh, threads);
     drawn_hexes.draw(mesh, threads);
@@ -221,6 +227,20 @@ Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalu
     return mesh;
 }
 
+template <class Value>
+Visited walk(const Field<Value>& field, const IndexView& index, double isovalue) {
+    Array<Vertex> none;
+    Walk<Tet, Value> tets(field, index.tets, nullptr, isovalue, none);
+    Walk<Hex, Value> hexes(field, index.hexes, nullptr, isovalue, none);
+    tets.run(isovalue);
+    hexes.run(isovalue);
+    tets.forget();
+    hexes.forget();
+    return {std::move(tets.walked.cells), std::move(hexes.walked.cells), tets.seeds + hexes.seeds};
+}
+
+template Visited walk<float>(const Field<float>&, const IndexView&, double);
+template Visited walk<double>(const Field<double>&, const IndexView&, double);
 template Mesh propagate<float>(const Field<float>&, const IndexView&, double, int);
 template Mesh propagate<double>(const Field<double>&, const IndexView&, double, int);
 

@@ -233,7 +233,44 @@ class Thinner {
         return any;
     }
 
-    bool tunnel() { return false; }
+    // Where no single cell reaches both sides: the outside components grow into what remains, and where two of them meet the
+    // cells on the way are removed from one side to the other, as far as each step is safe.
+    bool tunnel() {
+        std::vector<int32_t> reached_from(gluing_.cells, -1), owner(gluing_.cells, -1);
+        std::vector<size_t> open;
+        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
+            for (size_t face = 0; remains(cell) && owner[cell] < 0 && face < Cell::kFaces; ++face) owner[cell] = outside(cell, face);
+            if (owner[cell] >= 0) open.push_back(cell);
+        }
+        for (size_t head = 0; head < open.size(); ++head) {
+            const size_t cell = open[head];
+            for (size_t face = 0; remains(cell) && face < Cell::kFaces; ++face) {
+                const int32_t across = gluing_.neighbour(cell, face);
+                if (across < 0 || !remains(static_cast<size_t>(across))) continue;
+                const auto other = static_cast<size_t>(across);
+                if (owner[other] < 0) {
+                    owner[other] = owner[cell];
+                    reached_from[other] = static_cast<int32_t>(cell);
+                    open.push_back(other);
+                } else if (find(owner[other]) != find(owner[cell]) && open_path(reached_from, cell, other)) {
+                    return true;
+                }
+            }
+        }
+        return false;
+    }
+
+    bool open_path(const std::vector<int32_t>& reached_from, size_t one, size_t other) {
+        std::vector<size_t> path;
+        for (auto cell = static_cast<int32_t>(one); cell >= 0; cell = reached_from[static_cast<size_t>(cell)]) path.push_back(static_cast<size_t>(cell));
+        std::reverse(path.begin(), path.end());
+        for (auto cell = static_cast<int32_t>(other); cell >= 0; cell = reached_from[static_cast<size_t>(cell)]) path.push_back(static_cast<size_t>(cell));
+        for (const size_t cell : path) {
+            if (!remains(cell) || !is_safe(cell, used(cell))) return false;
+            remove(cell);
+        }
+        return true;
+    }
 
     Skeleton collect() {
         Skeleton skeleton;

@@ -15,8 +15,8 @@
 
 namespace isocore::thinning {
 
-// A cell of the index: kCorners point ids, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges
-// between the same two points.
+// A cell of the index: kCorners points, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges between
+// the same two points. Cells and points are renumbered so that neighbours lie close together.
 template <class Cell>
 inline constexpr std::size_t kRecord = Cell::kCorners + Cell::kFaces + Cell::kEdges;
 
@@ -31,6 +31,7 @@ struct Part {
 
 struct Index {
     Part tets, hexes;
+    Array<std::int32_t> points;  // the mesh's id of every point of the index
     std::size_t edge_count = 0;
 };
 
@@ -52,6 +53,7 @@ struct PartView {
 
 struct IndexView {
     PartView tets, hexes;
+    const std::int32_t* points;
     std::int32_t* vertex_of_edge;  // one per edge, all -1 before and after
 };
 
@@ -62,7 +64,17 @@ struct Mesh {
     std::size_t visited = 0;        // cells walked, all of which it meets
 };
 
+// field: of the points as the index numbers them.
 template <class Value>
 Mesh propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
+
+// The search alone: the cells propagate would draw, in the order of the walk.
+struct Visited {
+    Array<std::int32_t> tets, hexes;
+    std::size_t seeds = 0;
+};
+
+template <class Value>
+Visited walk(const mesh::Field<Value>& field, const IndexView& index, double isovalue);
 
 }  // namespace isocore::thinning

@@ -1,6 +1,6 @@
 // edge_merger.cpp - See edge_merger.hpp. Threads never meet: every run of edges knows its places in every range before
 // it is scattered, and every range its vertices before they are written.
-#include "marching_cells/edge_merger.hpp"
+#include "common/edge_merger.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,7 @@
 
 #include "common/parallel.hpp"
 
-namespace isocore::marching_cells {
+namespace isocore {
 namespace {
 
 constexpr std::size_t kEdgesPerRange = 4096, kMaxRanges = 1024, kFewEdges = 48;
@@ -119,4 +119,4 @@ Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int
     return merged;
 }
 
-}  // namespace isocore::marching_cells
+}  // namespace isocore

@@ -9,7 +9,7 @@
 
 #include "common/array.hpp"
 
-namespace isocore::marching_cells {
+namespace isocore {
 
 struct Edge {
     std::int32_t low, high;  // point ids, low < high; equal ones name no edge and get vertex -1
@@ -23,4 +23,4 @@ struct Merged {
 // `seen` comes in runs that were found apart; `points` is the number of points.
 Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int threads);
 
-}  // namespace isocore::marching_cells
+}  // namespace isocore

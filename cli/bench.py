@@ -1,0 +1,93 @@
+"""`isocore bench`: the papers' tables on the user's own data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .options import PATH, default_threads, read_options, reading_options
+
+if TYPE_CHECKING:
+    from isocore.thinning_bench import Table
+
+
+@click.command(short_help="The papers' tables on your own data.")
+@click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
+@reading_options
+@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="How many, evenly spaced.")
+@click.option("--threads", default=None, type=click.IntRange(1), help="Threads for drawing.")
+@click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
+@click.pass_context
+def bench(
+    context: click.Context,
+    files: tuple[Path, ...],
+    isovalues: int,
+    threads: int | None,
+    as_json: bool,
+    **chosen: Any,
+) -> None:
+    """Time every way to find an isosurface's cells in each mesh FILE, and print the tables of the thinning paper.
+
+    \b
+    isocore bench sample_volumes/torus.vtu
+    """
+    from isocore.errors import IsocoreError
+
+    failures = 0
+    records = []
+    for path in files:
+        try:
+            tables = _tables(path, isovalues, threads or default_threads(), chosen)
+        except IsocoreError as error:
+            click.echo(f"isocore: {error}", err=True)
+            failures += 1
+            continue
+        if as_json:
+            records.append({"source": str(path), "tables": [_record(table) for table in tables]})
+        else:
+            click.echo("\n\n".join([click.style(str(path), bold=True), *map(_text, tables)]))
+    if as_json:
+        import json
+
+        click.echo(json.dumps(records, indent=2))
+    context.exit(1 if failures else 0)
+
+
+def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) -> list[Table]:
+    from isocore.cell_mesh import CellMesh
+    from isocore.errors import FieldError
+    from isocore.readers import read
+    from isocore.thinning_bench import mesh_bench
+
+    field = read(path, read_options(chosen))
+    if not isinstance(field, CellMesh):
+        raise FieldError(f"{path}: is a volume; bench takes meshes")
+    try:
+        return mesh_bench(field, isovalues=isovalues, threads=threads)
+    except FieldError as error:
+        raise FieldError(f"{path}: {error}") from error
+
+
+def _record(table: Table) -> dict[str, Any]:
+    return {"title": table.title, "rows": [dict(zip(table.columns, row, strict=True)) for row in table.rows]}
+
+
+def _text(table: Table) -> str:
+    """Columns under their headings, numbers to the right."""
+    rows = [table.columns, *([_cell(entry) for entry in row] for row in table.rows)]
+    widths = [max(len(row[n]) for row in rows) for n in range(len(table.columns))]
+    numeric = [not isinstance(entry, str) for entry in table.rows[0]]
+    lines = [
+        "  ".join(
+            entry.rjust(width) if right else entry.ljust(width)
+            for entry, width, right in zip(row, widths, numeric, strict=True)
+        ).rstrip()
+        for row in rows
+    ]
+    return "\n".join([table.title, *lines])
+
+
+def _cell(entry: str | int | float) -> str:
+    return entry if isinstance(entry, str) else f"{entry:,}" if isinstance(entry, int) else f"{entry:.4g}"

@@ -1,0 +1,64 @@
+"""Volume thinning where the cells are those of a voxel volume: hexahedra that need no adjacency.
+
+Follows Itoh, Yamaguchi, Koyamada, IEEE TVCG 7(1), 2001, as isocore/thinning.py does for meshes.
+"""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.extraction import Options
+from isocore.volume import Volume
+
+# As in thinning.py; the longest axis whose index coordinates float32 keeps apart, as in marching cubes.
+_NOISE = 0.05
+_LONGEST_FOR_FLOAT32 = 8192
+
+
+class GridWalker:
+    """A thinned volume, ready to walk; one call at a time, since calls share the marks they leave and take back.
+
+    With capped the volume counts as surrounded by a layer of outside samples.
+    """
+
+    def __init__(self, volume: Volume, *, capped: bool) -> None:
+        self._samples = volume.samples
+        self._how = (volume.inside_is_below, capped)
+        skeleton, low, high, extrema = _kernels.thin_grid(volume.samples, *self._how)
+        self._skeleton = (skeleton, low, high)
+        layers = 1 if capped else -1
+        cells = int(np.prod([size + layers for size in volume.shape]))
+        self._visited = np.zeros(cells, np.uint8)
+        self._known = {"cells": cells, "extrema": extrema, "skeleton": len(skeleton)}
+        self._one_at_a_time = Lock()
+
+    def propagate(
+        self, stored: float, threads: int
+    ) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], dict[str, dict[str, int]]]:
+        """stored isovalue -> vertices in index space, triangles, facts: the surface of marching cubes."""
+        kernel: Any = _kernels.propagate_grid
+        with self._one_at_a_time:
+            found = kernel(self._samples, *self._skeleton, self._visited, stored, *self._how, threads)
+        vertices, triangles, seeds, visited, faces, cells = found
+        if max(self._samples.shape) <= _LONGEST_FOR_FLOAT32:
+            vertices = vertices.astype(np.float32)
+        search = {**self._known, "seeds": seeds, "visited": visited, "intersected": visited}
+        return vertices, triangles, {"search": search, "ambiguous": {"faces": faces, "cells": cells}}
+
+    def advice(self, options: Options) -> tuple[str, ...]:
+        """What to tell a user for whom thinning does not pay."""
+        warnings = []
+        if options.isovalues == 1:
+            warnings.append("one isovalue does not repay thinning: choose -b mc")
+        share = self._known["extrema"] / self._known["cells"]
+        if share > _NOISE:
+            warnings.append(
+                f"the field is noise to thinning: {self._known['extrema']:,} extrema, and a skeleton of "
+                f"{self._known['skeleton']:,} of {self._known['cells']:,} cells; -b mc may be faster"
+            )
+        return tuple(warnings)
