@@ -9,7 +9,9 @@ Names are imported when they are first used, so that `import isocore` costs noth
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -64,6 +66,16 @@ _HOMES = {
     "volume": ("Volume",),
     "writers": ("write",),
 }
+
+
+class _Package(ModuleType):
+    """The function `measure` keeps its name, although importing the submodule of that name would take it."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value.measure if name == "measure" and isinstance(value, ModuleType) else value)
+
+
+sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

@@ -13,10 +13,10 @@ from isocore.report.record import RunReport
 from isocore.volume import Volume
 
 REQUIREMENTS = ("watertight", "manifold", "nonempty")
-#: Options that only some backends understand.
-OWN_OPTIONS = tuple(item.name for item in fields(Options) if item.name not in ("threads", "cap", "normals"))
+#: What the pipeline tells a backend besides what was asked for.
+_NO_OPTIONS = ("isovalues", "index")
 #: Facts of a backend that have a key of their own in the record.
-_NAMED_FACTS = ("error", "search", "ambiguous")
+_NAMED_FACTS = ("error", "search", "ambiguous", "climbing")
 
 
 def field_parts(source: Field, spread: Histogram) -> dict[str, Any]:
@@ -63,7 +63,7 @@ def surface_parts(found: Extraction, measured: Measurements, chosen: Chosen, spr
 
 def options_part(options: Options, **others: Any) -> dict[str, Any]:
     """The options that were given, without those left to the backend."""
-    given = {item.name: getattr(options, item.name) for item in fields(Options)}
+    given = {item.name: getattr(options, item.name) for item in fields(Options) if item.name not in _NO_OPTIONS}
     return {key: value for key, value in (given | others).items() if value is not None}
 
 

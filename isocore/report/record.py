@@ -50,6 +50,7 @@ class RunReport:
     error: dict[str, Any] | None = None
     search: dict[str, Any] | None = None
     ambiguous: dict[str, Any] | None = None
+    climbing: dict[str, Any] | None = None
     facts: dict[str, Any] = dataclasses.field(default_factory=dict)
     seconds: dict[str, float] = dataclasses.field(default_factory=dict)
     peak_rss_bytes: int | None = None

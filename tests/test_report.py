@@ -1,0 +1,206 @@
+"""The record, and every format it is rendered in."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from isocore.cli.report import report as report_command
+from small_files import ball, write_nifti
+
+from isocore.errors import InputError, OptionError
+from isocore.pipeline import Job, Target, convert
+from isocore.report import (
+    BatchReport,
+    RunReport,
+    batch_as_dict,
+    github_annotations,
+    load_report,
+    merged,
+    renderer_for,
+    run_as_dict,
+    save_report,
+)
+from isocore.report.compare import broken_limits, parse_limit
+
+DOCUMENT = Path(__file__).parent.parent / "docs" / "report.md"
+NASTY = 'a "quoted", <b>&amp;</b> | name\x07\n;=cmd'
+
+
+def run_of(**changes: Any) -> RunReport:
+    known: dict[str, Any] = {
+        "source": "in/a.nii",
+        "output": "out/a.ply",
+        "status": "done",
+        "asked": "50",
+        "isovalue": 50.0,
+        "surface": {"triangles": 100, "vertices": 52, "watertight": True},
+        "seconds": {"prepare": 0.1, "extract": 0.9, "total": 1.5},
+    }
+    return RunReport(**(known | changes))
+
+
+@pytest.fixture
+def batch() -> BatchReport:
+    return BatchReport(
+        (
+            run_of(),
+            run_of(output="out/b.ply", missed=("watertight: 3 open edges",), warnings=("half of it is missing",)),
+            RunReport(source=f"in/{NASTY}.nii", output="out/c.ply", status="failed", message=f"in/{NASTY}: is broken"),
+            run_of(output="out/d.ply", status="skipped", message="up to date"),
+            run_of(output="out/e.ply", status="empty", surface={"triangles": 0}, range=(float("nan"), 1.0)),
+        ),
+        arguments=("convert", "in"),
+        seconds=2.5,
+    )
+
+
+def documented(section: str) -> set[str]:
+    """Keys in the first column of a section's table."""
+    text = DOCUMENT.read_text(encoding="utf-8").split(f"{section}\n", 1)[1]
+    text = re.split(r"^#", text, maxsplit=1, flags=re.MULTILINE)[0]
+    return {
+        key
+        for line in text.splitlines()
+        if line.startswith("| `")
+        for key in re.findall(r"`(\w+)`", line.split("|")[1])
+    }
+
+
+def test_every_key_is_documented_and_every_documented_key_exists(tmp_path: Path, batch: BatchReport) -> None:
+    """docs/report.md against the record itself and against real runs of each backend."""
+    assert documented("## A record") == {item.name for item in fields(RunReport)}
+    assert documented("## The whole") == set(batch_as_dict(batch))
+    assert documented("### totals") == set(batch.totals)
+    job = Job(source=write_nifti(tmp_path / "ball.nii", ball()), targets=(Target("50", tmp_path / "ball.ply"),))
+    (run,) = convert(job)
+    record = run_as_dict(run)
+    for part in ("histogram", "surface", "reference", "ratio", "seconds", "error", "ambiguous", "climbing"):
+        assert documented(f"### {part}") == set(record[part]), part
+
+
+def test_a_report_survives_the_round_trip(tmp_path: Path, batch: BatchReport) -> None:
+    """JSON that any parser takes, and every record comes back."""
+    save_report(batch, tmp_path / "run.json")
+    assert "NaN" not in (tmp_path / "run.json").read_text()
+    again = load_report(tmp_path / "run.json")
+    assert [run_as_dict(run) for run in again.outputs] == [run_as_dict(run) for run in batch.outputs]
+    assert again.totals == batch.totals
+
+
+def test_csv_has_a_row_per_output_whatever_the_names(batch: BatchReport) -> None:
+    """Quotes, commas and line ends within a field."""
+    rows = list(csv.DictReader(io.StringIO(renderer_for(Path("x.csv"))(batch), newline="")))
+    assert len(rows) == 5 and rows[2]["source"] == f"in/{NASTY}.nii"
+    assert rows[0]["surface.triangles"] == "100" and rows[0]["surface.watertight"] == "true"
+
+
+def test_jsonl_has_a_record_per_line(batch: BatchReport) -> None:
+    """And nothing else."""
+    lines = renderer_for(Path("x.jsonl"))(batch).splitlines()
+    assert [json.loads(line)["output"] for line in lines] == [run.output for run in batch.outputs]
+
+
+def test_junit_counts_errors_and_failures(batch: BatchReport) -> None:
+    """A missed requirement is a failure, a failed run an error, an up-to-date output skipped."""
+    root = ElementTree.fromstring(renderer_for(Path("x.xml"))(batch))
+    (suite,) = root
+    counts = {key: suite.get(key) for key in ("tests", "failures", "errors", "skipped")}
+    assert counts == {"tests": "5", "failures": "1", "errors": "1", "skipped": "1"}
+    cases = suite.findall("testcase")
+    assert [child.tag for case in cases for child in case] == ["failure", "system-err", "error", "skipped"]
+    assert len([case for case in cases if case.get("name") and case.get("classname") and case.get("time")]) == 5
+
+
+def test_junit_follows_the_common_schema(batch: BatchReport) -> None:
+    """The attributes and children that the de-facto schema allows, in its order."""
+    allowed = {
+        "testsuites": {"name", "tests", "failures", "errors", "time"},
+        "testsuite": {"name", "tests", "failures", "errors", "skipped", "time"},
+        "testcase": {"name", "classname", "time"},
+        "failure": {"type", "message"},
+        "error": {"type", "message"},
+        "skipped": {"message"},
+        "system-err": set(),
+    }
+    for element in ElementTree.fromstring(renderer_for(Path("x.xml"))(batch)).iter():
+        assert set(element.attrib) <= allowed[element.tag]
+
+
+def test_markdown_puts_failures_first_and_escapes_names(batch: BatchReport) -> None:
+    """A pipe in a file name adds no column."""
+    text = renderer_for(Path("x.md"))(batch)
+    table = [line for line in text.splitlines() if line.startswith("|")]
+    assert len({len(re.findall(r"(?<!\\)\|", line)) for line in table}) == 1 and len(table) == 7
+    assert text.index("**failed**") < text.index("| file")
+
+
+def test_bench_json_is_a_list_of_named_numbers(batch: BatchReport) -> None:
+    """Only of outputs that were made in this run."""
+    entries = json.loads(renderer_for(Path("bench.json"))(batch))
+    assert {frozenset(entry) for entry in entries} == {frozenset({"name", "value", "unit"})}
+    assert not any("failed" in entry["name"] for entry in entries)
+
+
+def test_github_sees_failures_and_warnings(batch: BatchReport) -> None:
+    """One line each, with line ends and colons escaped."""
+    lines = github_annotations(batch)
+    assert [line.split(" ")[0] for line in lines] == ["::error", "::warning", "::error"]
+    assert all("\n" not in line for line in lines)
+
+
+def test_a_foreign_file_is_no_report(tmp_path: Path) -> None:
+    """One line that says so."""
+    for text in ("", "[]", '{"schema": 99}', '{"schema": 1}', '{"schema": 1, "outputs": [{}]}'):
+        (tmp_path / "x.json").write_text(text)
+        with pytest.raises(InputError, match=r"x\.json: "):
+            load_report(tmp_path / "x.json")
+
+
+def test_of_two_runs_of_one_output_the_later_stays(batch: BatchReport) -> None:
+    """Merging a resumed run into the first."""
+    both = merged([batch, BatchReport((run_of(output="out/b.ply"),), seconds=1.0)])
+    assert len(both.outputs) == 5 and not both.outputs[1].missed and both.seconds == 3.5
+
+
+@pytest.mark.parametrize(
+    ("limit", "broken"),
+    [
+        ("triangles>+2%", True),
+        ("triangles>+20%", False),
+        ("seconds>+20%", False),
+        ("triangles>105", True),
+        ("surface.vertices<52", False),
+        ("surface.nothing>0", False),
+    ],
+)
+def test_a_limit_breaks_where_it_should(limit: str, broken: bool) -> None:
+    """Ten per cent more triangles in the same time."""
+    new = run_of(surface={"triangles": 110, "vertices": 57})
+    assert bool(broken_limits(BatchReport((run_of(),)), BatchReport((new,)), [parse_limit(limit)])) is broken
+
+
+def test_nonsense_is_no_limit() -> None:
+    """Rather than never breaking."""
+    for text in ("triangles", "triangles>", "triangles=3", "triangles>+2 percent"):
+        with pytest.raises(OptionError):
+            parse_limit(text)
+
+
+def test_comparing_exits_with_3_where_a_limit_is_broken(tmp_path: Path) -> None:
+    """What fails now and did not then needs no limit."""
+    old, new = tmp_path / "old.json", tmp_path / "new.json"
+    save_report(BatchReport((run_of(),)), old)
+    save_report(BatchReport((run_of(status="failed", message="in/a.nii: broke"),)), new)
+    runner = CliRunner()
+    assert runner.invoke(report_command, ["--compare", str(old), str(old), "--fail-if", "seconds>+1%"]).exit_code == 0
+    assert runner.invoke(report_command, ["--compare", str(old), str(new)]).exit_code == 3
+    assert runner.invoke(report_command, ["--compare", str(old)]).exit_code == 2
