@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-
 import isocore
 
 ROOT = Path(__file__).resolve().parent.parent
