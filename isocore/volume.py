@@ -67,7 +67,11 @@ class Volume:
         affine = np.eye(4) if self.affine is None else np.array(self.affine, dtype=np.float64)
         if affine.shape != (4, 4) or not np.isfinite(affine).all():
             raise FieldError("the affine must be a finite 4x4 matrix")
-        if abs(np.linalg.det(affine[:3, :3])) < 1e-30:
+        with np.errstate(over="ignore"):
+            voxel = abs(np.linalg.det(affine[:3, :3]))
+        if not math.isfinite(voxel):
+            raise FieldError("the affine is too large to reckon with: a voxel has no finite volume")
+        if voxel < 1e-30:
             raise FieldError("the affine is singular: an axis has no length or two axes coincide")
         affine.flags.writeable = False
         samples.flags.writeable = False

@@ -152,4 +152,4 @@ def _mm_per_unit(header: Any) -> float | None:
 
 
 def _is_regular(affine: npt.NDArray[np.float64]) -> bool:
-    return bool(np.isfinite(affine).all()) and abs(float(np.linalg.det(affine[:3, :3]))) > 1e-30
+    return bool(np.isfinite(affine).all()) and 1e-30 < abs(float(np.linalg.det(affine[:3, :3]))) < math.inf

@@ -73,7 +73,9 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     files = [path.parent / name for name in names]
     missing = [name for name, file in zip(names, files, strict=True) if not file.is_file()]
     if missing or not files:
-        raise InputError(f"its samples are missing: no {(missing or ['data file'])[0]} beside it; put it there")
+        name = (missing or ["data file"])[0]
+        shown = name if name.isprintable() else ascii(name)
+        raise InputError(f"its samples are missing: no {shown} beside it; put it there")
     if layout.total_bytes % len(files):
         raise InputError(f"header spreads {layout.total_bytes:,} bytes unevenly over {len(files)} files; mend it")
     return [(file, 0) for file in files]

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+import numpy as np
+
 from isocore.errors import InputError, one_line
 
 #: Data file of a header whose following lines name data files.
@@ -101,10 +103,11 @@ def _value(magic: str, name: str, value: str) -> Any:
     if name == "space directions":  # blanks inside of a vector split it
         value = re.sub(r"\([^()]*\)", lambda vector: "".join(vector[0].split()), value)
     try:
-        if name == "sizes":  # of 4.7 it makes 4, of nan and 1e30 any number
+        if name == "sizes":  # of 4.7 it makes 4
             value = " ".join(str(int(size)) for size in value.split())
-        return nrrd.read_header([magic, f"{name}: {value}"])[name]
-    except (ValueError, OverflowError, IndexError, nrrd.errors.NRRDError) as error:
+        with np.errstate(invalid="raise"):  # a number too long for an integer
+            return nrrd.read_header([magic, f"{name}: {value}"])[name]
+    except (ValueError, ArithmeticError, IndexError, nrrd.errors.NRRDError) as error:
         line, why = f"{name}: {value}"[:60], one_line(error)[:80]
         raise InputError(f"header line {line!a} cannot be read ({why}); mend it") from error
 
