@@ -117,12 +117,12 @@ class Drawing {
     Drawing(const Walk<Cell, Value>& walk, const Field<Value>& field, const int32_t* vertex_of_edge, double isovalue)
         : walk_(walk), field_(field), vertex_of_edge_(vertex_of_edge), isovalue_(isovalue), chunks_((walk.walked.cells.size() + kChunk - 1) / kChunk) {}
 
-    void count(int threads) {
-        parallel_for(threads, chunks_.size(), [&](size_t chunk) {
-            for_each(chunk, [&](const int32_t*, const auto& drawn) {
-                chunks_[chunk].triangles += drawn.triangles;
-                chunks_[chunk].middles += drawn.middles;
-            });
+    size_t chunks() const { return chunks_.size(); }
+
+    void count(size_t chunk) {
+        for_each(chunk, [&](const int32_t*, const auto& drawn) {
+            chunks_[chunk].triangles += drawn.triangles;
+            chunks_[chunk].middles += drawn.middles;
         });
     }
 
@@ -134,20 +134,18 @@ class Drawing {
         }
     }
 
-    void draw(Mesh& mesh, int threads) const {
-        parallel_for(threads, chunks_.size(), [&](size_t chunk) {
-            int32_t* out = mesh.triangles.data() + 3 * chunks_[chunk].triangles;
-            size_t middle = chunks_[chunk].middles;
-            for_each(chunk, [&](const int32_t* corners, const auto& drawn) {
-                const int32_t* edges = corners + Cell::kCorners + Cell::kFaces;
-                for (size_t n = 0; n < 3u * drawn.triangles; ++n) {
-                    const size_t edge = drawn.edges[n];
-                    *out++ = edge < mesh::kMiddle ? vertex_of_edge_[edges[edge]] : static_cast<int32_t>(middle + edge - mesh::kMiddle);
-                }
-                const auto position = [&](size_t edge) { return mesh.vertices.data() + 3 * static_cast<size_t>(vertex_of_edge_[edges[edge]]); };
-                mesh::write_middles(drawn, position, mesh.vertices.data() + 3 * middle);
-                middle += drawn.middles;
-            });
+    void draw(size_t chunk, Mesh& mesh) const {
+        int32_t* out = mesh.triangles.data() + 3 * chunks_[chunk].triangles;
+        size_t middle = chunks_[chunk].middles;
+        for_each(chunk, [&](const int32_t* corners, const auto& drawn) {
+            const int32_t* edges = corners + Cell::kCorners + Cell::kFaces;
+            for (size_t n = 0; n < 3u * drawn.triangles; ++n) {
+                const size_t edge = drawn.edges[n];
+                *out++ = edge < mesh::kMiddle ? vertex_of_edge_[edges[edge]] : static_cast<int32_t>(middle + edge - mesh::kMiddle);
+            }
+            const auto position = [&](size_t edge) { return mesh.vertices.data() + 3 * static_cast<size_t>(vertex_of_edge_[edges[edge]]); };
+            mesh::write_middles(drawn, position, mesh.vertices.data() + 3 * middle);
+            middle += drawn.middles;
         });
     }
 
@@ -197,8 +195,8 @@ Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalu
     hexes.run(isovalue);
     Drawing<Tet, Value> drawn_tets(tets, field, index.vertex_of_edge, isovalue);
     Drawing<Hex, Value> drawn_hexes(hexes, field, index.vertex_of_edge, isovalue);
-    drawn_tets.count(threads);
-    drawn_hexes.count(threads);
+    for (size_t chunk = 0; chunk < drawn_tets.chunks(); ++chunk) drawn_tets.count(chunk);
+    parallel_for(threads, drawn_hexes.chunks(), [&](size_t chunk) { drawn_hexes.count(chunk); });
     size_t triangles = 0, vertices = crossed.size();
     drawn_tets.place(triangles, vertices);
     drawn_hexes.place(triangles, vertices);
@@ -208,16 +206,20 @@ Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalu
     Mesh mesh;
     mesh.vertices.resize(3 * vertices);
     mesh.triangles.resize(3 * triangles);
-    parallel_for(threads, crossed.size() / kChunk + 1, [&](size_t chunk) {
+    const auto place_vertices = [&](size_t chunk) {
         const size_t end = std::min(crossed.size(), (chunk + 1) * kChunk);
         for (size_t n = chunk * kChunk; n < end; ++n) {
             const auto [a, b, edge] = crossed[n];
             const bool ascending = index.points[a] < index.points[b];
             field.cross(ascending ? a : b, ascending ? b : a, isovalue, mesh.vertices.data() + 3 * n);
         }
+    };
+    // Starting threads costs as much as a chunk: one round for all but the hexahedra, whose middles need the vertices.
+    const size_t vertex_chunks = (crossed.size() + kChunk - 1) / kChunk;
+    parallel_for(threads, vertex_chunks + drawn_tets.chunks(), [&](size_t task) {
+        task < vertex_chunks ? place_vertices(task) : drawn_tets.draw(task - vertex_chunks, mesh);
     });
-    drawn_tets.draw(mesh, threads);
-    drawn_hexes.draw(mesh, threads);
+    parallel_for(threads, drawn_hexes.chunks(), [&](size_t chunk) { drawn_hexes.draw(chunk, mesh); });
     drop_collapsed(mesh.triangles);
     for (const Vertex& vertex : crossed) index.vertex_of_edge[vertex.edge] = -1;
     tets.forget();
