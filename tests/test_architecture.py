@@ -18,6 +18,7 @@ SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folde
 NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measure"}
 KERNELS = {"_kernels", "_kernels_base", "_kernels_v3"}
 BACKEND_ROOMS = {"backends", "climbing", "marching_cells", "thinning", "mesh_index", "index_file", "ambiguities"}
+BACKEND_ROOMS |= {"grid_thinning", "rivals", "thinning_bench"}
 FIELD_ROOMS = {"histogram", "isovalue", "extrema", "cell_splitting"}
 
 #: room -> rooms it may import. A room is the first part of a module's name below isocore.
