@@ -5,7 +5,7 @@ BIN     := $(VENV)/bin
 READY   := $(VENV)/ready
 SOURCES := pyproject.toml $(shell find isocore/kernels -type f)
 
-.PHONY: help develop demo test check lint types kernels bench golden samples dist clean
+.PHONY: help develop demo meshes test check lint types kernels bench golden samples dist clean
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
@@ -20,6 +20,9 @@ develop: $(READY)  ## install editable, with everything tests need
 demo: $(READY)  ## convert every sample into out/ and show the table
 	$(BIN)/isocore convert sample_volumes/knot.nii.gz -i 200 -d out
 	$(BIN)/isocore convert sample_volumes -d out --report out/report.json --report out/report.md
+
+meshes: $(READY)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=]: only what changed
+	@$(MAKE) --no-print-directory -f examples/meshes.mk ISOCORE=$(BIN)/isocore
 
 test: $(READY)  ## run all tests
 	$(BIN)/pytest

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from isocore import compose, stamps
 from isocore.dependencies import files_of
+from isocore.errors import one_line
 from isocore.leftovers import remove_parts
 from isocore.memory import estimated_bytes
 from isocore.pipeline import STDOUT, Job, Target, convert, failed
@@ -77,7 +78,8 @@ def guarded(job: Job) -> Iterator[RunReport]:
             yield run
             done += 1
     except Exception as error:
-        unforeseen = RuntimeError(f"{job.source}: internal error ({type(error).__name__}: {error}); please report it")
+        what = f"internal error ({type(error).__name__}: {one_line(error)}); please report it"
+        unforeseen = RuntimeError(f"{job.source}: {what}")
         for target in job.targets[done:]:
             yield failed(job, target, unforeseen, seconds={})
 
