@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from isocore.errors import OptionError, one_line
 from isocore.leftovers import remove_parts
@@ -26,11 +27,12 @@ def run_on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, Run
     except (OSError, ValueError, TimeoutError) as error:
         raise OptionError(f"--scheduler {address}: does not answer ({one_line(error)}); check the address") from error
     with client:
-        futures = {client.submit(convert_whole, job, pure=False): job for job in jobs}
+        futures = {client.submit(convert_whole, _anywhere(job), pure=False): job for job in jobs}
         try:
-            for future in as_completed(list(futures)):
+            for future in as_completed(list(futures), loop=client.loop):
                 job = futures[future]
-                runs = future.result() if future.status == "finished" else _lost(job, future.exception())
+                finished = future.status == "finished"
+                runs = _as_named(job, future.result()) if finished else _lost(job, future.exception())
                 for run in runs:
                     yield job, run
                 future.release()
@@ -44,6 +46,21 @@ def convert_whole(job: Job) -> list[RunReport]:
 
     remove_parts(target.output for target in job.targets)
     return list(guarded(job))
+
+
+def _anywhere(job: Job) -> Job:
+    """The job with paths that hold in any folder."""
+    targets = tuple(replace(target, output=target.output.absolute()) for target in job.targets)
+    return replace(job, source=job.source.absolute(), targets=targets)
+
+
+def _as_named(job: Job, runs: list[RunReport]) -> list[RunReport]:
+    """The records with the paths that the command named."""
+    named = []
+    for target, run in zip(job.targets, runs, strict=True):
+        message = run.message.replace(run.source, str(job.source)).replace(run.output, str(target.output))
+        named.append(replace(run, source=str(job.source), output=str(target.output), message=message))
+    return named
 
 
 def _lost(job: Job, error: BaseException | None) -> list[RunReport]:
