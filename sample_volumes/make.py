@@ -34,7 +34,7 @@ def knot(samples_per_axis: int) -> npt.NDArray[np.uint8]:
 
 
 def landscape(shape: tuple[int, int, int]) -> npt.NDArray[np.int16]:
-    """Depth below the ground of a fractal landscape (spectrum falling with the frequency to the 1.9th): 12 a sample, at most 120."""
+    """Depth below the ground of a fractal landscape, 12 a sample, at most 120. Its spectrum falls with the 1.9th power."""
     nx, ny, nz = shape
     rng = np.random.default_rng(1998)
     frequency = np.hypot(np.fft.fftfreq(nx)[:, None], np.fft.fftfreq(ny)[None, :])
@@ -46,7 +46,7 @@ def landscape(shape: tuple[int, int, int]) -> npt.NDArray[np.int16]:
 
 
 def head(shape: tuple[int, int, int]) -> npt.NDArray[np.uint8]:
-    """A head-like phantom: skin 60, skull 200, brain 110, ventricles 40, two eyes 90; edges softened over a voxel or two."""
+    """A head-like phantom: skin 60, skull 200, brain 110, ventricles 40, two eyes 90; its edges are soft."""
     x, y, z = (np.linspace(-1, 1, n).reshape([-1 if a == b else 1 for b in range(3)]) for a, n in enumerate(shape))
     parts = [  # centre, radii, value
         ((0, 0, 0), (0.80, 0.92, 0.90), 60),
@@ -132,7 +132,9 @@ def body_with_void(cells: int, hollow: int) -> tuple[Floats, npt.NDArray[np.int3
     return points, hexes.reshape(-1, 8).astype(np.int32), np.asarray(field)
 
 
-def vtu(points: Floats, cells: npt.NDArray[np.int32], field: npt.NDArray[np.generic], *, vtk_type: int, name: str) -> bytes:
+def vtu(
+    points: Floats, cells: npt.NDArray[np.int32], field: npt.NDArray[np.generic], *, vtk_type: int, name: str
+) -> bytes:
     """A VTU file: appended raw blocks, zlib, 64-bit headers."""
     offsets = np.arange(1, len(cells) + 1, dtype=np.int32) * cells.shape[1]
     arrays = [("Points", points, 3), ("connectivity", cells.ravel(), 1), ("offsets", offsets, 1),

@@ -13,6 +13,8 @@ import pytest
 
 from isocore.volume import Volume
 
+Floats = npt.NDArray[np.float64]
+
 SHARED = Path(__file__).resolve().parent.parent.parent / "shared" / "data"
 SAMPLES = Path(__file__).resolve().parent.parent / "sample_volumes"
 
@@ -35,7 +37,7 @@ def volume_of(samples: npt.ArrayLike, **kwargs: object) -> Volume:
     return Volume(np.array(samples, order="F"), **kwargs)  # type: ignore[arg-type]  # the fields by name
 
 
-def _sampled(function: Callable[..., npt.NDArray[np.float64]], n: int, half: float) -> Volume:
+def _sampled(function: Callable[..., Floats], n: int, half: float) -> Volume:
     step = 2 * half / (n - 1)
     axis = np.linspace(-half, half, n)
     x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
@@ -59,7 +61,7 @@ def torus(n: int = 32) -> Shape:
 def two_spheres(n: int = 32) -> Shape:
     """Two balls of radius 0.5 that do not touch."""
 
-    def field(x: npt.NDArray[np.float64], y: npt.NDArray[np.float64], z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def field(x: Floats, y: Floats, z: Floats) -> Floats:
         return 0.5 - np.sqrt((np.abs(x) - 0.7) ** 2 + y * y + z * z)
 
     return Shape("two spheres", _sampled(field, n, 1.5), 0.0, 4, 2, 2 * math.pi, 2 * 4 / 3 * math.pi * 0.125)

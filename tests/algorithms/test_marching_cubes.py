@@ -10,11 +10,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from shapes import integer_noise, volume_of
 
 from isocore import _kernels
 from isocore.backends import Options, prepare
 from isocore.measure import measure
-from shapes import integer_noise, volume_of
 
 Samples = npt.NDArray[np.int8]
 shapes = st.tuples(*[st.integers(2, 5)] * 3)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from cell_shapes import HEX, PYRAMID, TET, WEDGE, block, of_kind
+
 from isocore.backends import BACKENDS, Options, prepare
 from isocore.cell_mesh import CellMesh
 from isocore.cell_splitting import split_cells

@@ -115,15 +115,17 @@ def take_turns(runs: dict[str, Run], rounds: int) -> dict[str, tuple[float, int]
 
 def machine() -> dict[str, str]:
     """Where these figures come from."""
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
-    return {"commit": commit.stdout.strip(), "machine": platform.platform(), "processor": processor(), "python": platform.python_version()}
+    head = ["git", "rev-parse", "--short", "HEAD"]
+    commit = subprocess.run(head, cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
+    here = {"machine": platform.platform(), "processor": processor(), "python": platform.python_version()}
+    return {"commit": commit, **here}
 
 
 def processor() -> str:
     """The processor's name, where the system tells it."""
     listing = Path("/proc/cpuinfo")
-    names = [line.split(":")[1].strip() for line in listing.read_text().splitlines() if line.startswith("model name")] if listing.exists() else []
-    return names[0] if names else platform.processor()
+    lines = listing.read_text().splitlines() if listing.exists() else []
+    return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
 
 
 def main() -> None:
@@ -136,9 +138,12 @@ def main() -> None:
     rows = []
     for name, volume, stored in volumes():
         for threads in (1, 2):
-            runs = {"VTK Flying Edges": flying_edges(volume, stored, threads), "isocore mc": ours(volume, stored, "mc", threads)}
-            runs["isocore asc, no bound"] = ours(volume, stored, "asc", threads, max_error="none")
-            runs["isocore asc, 0.5 voxel"] = ours(volume, stored, "asc", threads, max_error="0.5")
+            runs = {
+                "VTK Flying Edges": flying_edges(volume, stored, threads),
+                "isocore mc": ours(volume, stored, "mc", threads),
+                "isocore asc, no bound": ours(volume, stored, "asc", threads, max_error="none"),
+                "isocore asc, 0.5 voxel": ours(volume, stored, "asc", threads, max_error="0.5"),
+            }
             if threads == 1 and not arguments.no_scikit_image:
                 runs["scikit-image"] = scikit_image(volume, stored)
             timed = take_turns(runs, arguments.rounds)
@@ -146,7 +151,8 @@ def main() -> None:
             for method, (seconds, triangles) in timed.items():
                 ratio = seconds / reference
                 print(f"{name:14}{threads:>8}  {method:22}{triangles:>12,}{1e3 * seconds:>10.1f}{ratio:>16.2f}")
-                rows.append({"volume": name, "threads": threads, "method": method, "triangles": triangles, "seconds": seconds, "ratio": ratio})
+                row = {"volume": name, "threads": threads, "method": method, "triangles": triangles}
+                rows.append({**row, "seconds": seconds, "ratio": ratio})
     (ROOT / "bench.json").write_text(json.dumps({**machine(), "rows": rows}, indent=1) + "\n")
 
 

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from shapes import Shape, integer_noise, padded_shapes, sphere, volume_of
 
 from isocore.backends import BACKENDS, Options, prepare
 from isocore.measure import measure
 from isocore.surface import Surface
 from isocore.volume import Volume
-from shapes import Shape, integer_noise, padded_shapes, sphere, volume_of
 
 VOLUME_BACKENDS = [name for name, backend in BACKENDS.items() if Volume in backend.accepts]
 each_backend = pytest.mark.parametrize("backend", VOLUME_BACKENDS)
