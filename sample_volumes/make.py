@@ -34,7 +34,7 @@ def knot(samples_per_axis: int) -> npt.NDArray[np.uint8]:
 
 
 def landscape(shape: tuple[int, int, int]) -> npt.NDArray[np.int16]:
-    """Depth below the ground of a fractal landscape, 12 a sample, at most 120. Its spectrum falls with the 1.9th power."""
+    """Depth below the ground of a fractal landscape (spectrum to the -1.9th power), 12 a sample, at most 120."""
     nx, ny, nz = shape
     rng = np.random.default_rng(1998)
     frequency = np.hypot(np.fft.fftfreq(nx)[:, None], np.fft.fftfreq(ny)[None, :])
@@ -152,7 +152,8 @@ def vtu(
         'header_type="UInt64" compressor="vtkZLibDataCompressor">\n<UnstructuredGrid>\n'
         f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(cells)}">\n<PointData Scalars="{name}">'
         f'{entries[name]}</PointData>\n<Points>{entries["Points"]}</Points>\n<Cells>{entries["connectivity"]}'
-        f'{entries["offsets"]}{entries["types"]}</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding="raw">\n_'
+        f'{entries["offsets"]}{entries["types"]}</Cells>\n</Piece>\n</UnstructuredGrid>\n'
+        '<AppendedData encoding="raw">\n_'
     )
     return head.encode() + blocks + b"\n</AppendedData>\n</VTKFile>\n"
 

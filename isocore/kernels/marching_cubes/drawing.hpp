@@ -29,8 +29,8 @@ class Drawer {
 
     std::size_t ambiguous_faces = 0, ambiguous_cells = 0, tubes_drawn = 0;
 
-    // Writes the triangles of cell row (j, k) from `out` on, and returns the end.
-    std::int32_t* draw(std::size_t j, std::size_t k, std::int32_t* out) {
+    // Writes the triangles of cell row (j, k) from `out` on, and returns the end. All before `limit` may be written to.
+    std::int32_t* draw(std::size_t j, std::size_t k, std::int32_t* out, const std::int32_t* limit) {
         const Rows rows(signs_, j, k);
         const std::size_t row = j + signs_.dims[1] * k, above = row + signs_.dims[1];
         // Numbers of the first crossing, of this row of cells, along: x (4 rows), y (2 planes), z (2 rows).
@@ -56,13 +56,13 @@ class Drawer {
                 if constexpr (tubes) {
                     if (drawn.loops > 1) {
                         if (const Tube* tube = find_tube(drawn, corners, {i, j, k})) {
-                            out = write(tube->drawn, numbers, out);
+                            out = write(tube->drawn, numbers, out, limit);
                             ++tubes_drawn;
                             continue;
                         }
                     }
                 }
-                out = write(drawn, numbers, out);
+                out = write(drawn, numbers, out, limit);
             }
             for (std::size_t n = 0; n < 8; ++n) base[n] += ones(crossed[n]);
         }
@@ -70,10 +70,18 @@ class Drawer {
     }
 
   private:
+    // Nearly every cell has at most five triangles. Writing always five, and keeping as many as there are, spares the
+    // processor a loop whose length it cannot foresee.
     template <class AnyCase>
-    static std::int32_t* write(const AnyCase& drawn, const std::array<std::uint32_t, 12>& numbers, std::int32_t* out) {
-        for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
-        return out;
+    static std::int32_t* write(const AnyCase& drawn, const std::array<std::uint32_t, 12>& numbers, std::int32_t* out,
+                               const std::int32_t* limit) {
+        const unsigned count = 3u * drawn.triangles, usual = 15;
+        if (count <= usual && limit - out >= static_cast<std::ptrdiff_t>(usual)) {
+            for (unsigned n = 0; n < usual; ++n) out[n] = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+        } else {
+            for (unsigned n = 0; n < count; ++n) out[n] = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+        }
+        return out + count;
     }
 
     // The vertex numbers of a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.

@@ -20,7 +20,8 @@ namespace {
 // A run of cell layers: the unit of parallel work. Its place in the outputs is known before it runs.
 struct Slab {
     std::size_t first_plane, end_plane;
-    std::size_t first_vertex, first_triangle, triangles;
+    std::size_t first_vertex, first_triangle;
+    std::size_t triangles;  // at most; once drawn, exactly
     std::size_t ambiguous_faces = 0, ambiguous_cells = 0, tubes = 0;
 };
 
@@ -33,6 +34,7 @@ std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t 
             work = 0;
         }
         slabs.back().end_plane = k + 1;
+        slabs.back().triangles += layers[k].triangles;
         vertex += layers[k].vertices;
         triangle += layers[k].triangles;
         work += layers[k].vertices + layers[k].triangles + 64;
@@ -62,11 +64,12 @@ void draw_slabs(const GridView<Sample>& samples, const SignGrid& signs, const st
         Drawer<Sample, tubes> drawer(samples, signs, bases, options.isovalue, options.below);
         Coordinate* vertex = mesh.vertices.data() + 3 * slab.first_vertex;
         std::int32_t* const first = mesh.triangles.data() + 3 * slab.first_triangle;
+        const std::int32_t* const limit = first + 3 * slab.triangles;
         std::int32_t* triangle = first;
         for (std::size_t k = slab.first_plane; k < slab.end_plane; ++k) {
             for (std::size_t j = 0; j < rows; ++j) {
                 vertex = write_row_vertices(samples, signs, options.isovalue, j, k, vertex);
-                if (k + 1 < planes && j + 1 < rows) triangle = drawer.draw(j, k, triangle);
+                if (k + 1 < planes && j + 1 < rows) triangle = drawer.draw(j, k, triangle, limit);
             }
         }
         slab.triangles = static_cast<std::size_t>(triangle - first) / 3;
