@@ -5,11 +5,13 @@ void test_crossing();
 void test_cell_loops();
 void test_marching_cubes();
 void test_tubes();
+void test_thinning();
 
 int main() {
     test_crossing();
     test_cell_loops();
     test_marching_cubes();
     test_tubes();
+    test_thinning();
     std::puts("kernels: all checks hold");
 }

@@ -1,0 +1,196 @@
+// Propagation from the skeleton against a full scan, on small random meshes and volumes; and the parts it rests on.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "check.hpp"
+#include "common/mesh_cases.hpp"
+#include "marching_cells/marching_cells.hpp"
+#include "marching_cubes/marching_cubes.hpp"
+#include "thinning/grid_thinning.hpp"
+#include "thinning/range_lookup.hpp"
+#include "thinning/safe_rule.hpp"
+#include "thinning/thinning.hpp"
+
+namespace {
+
+using namespace isocore;
+
+struct Box {
+    std::vector<double> points;
+    std::vector<std::int32_t> tets, hexes;
+    std::vector<double> values;
+};
+
+// Unit boxes along three axes, each as six tetrahedra around its diagonal and as one hexahedron in VTK's order.
+Box make_box(int size, std::mt19937& random) {
+    Box box;
+    const int across = size + 1;
+    const auto id = [&](int i, int j, int k) { return i + across * (j + across * k); };
+    std::uniform_int_distribution<int> level(0, 4);
+    for (int n = 0; n < across * across * across; ++n) {
+        for (const int place : {n % across, n / across % across, n / across / across}) box.points.push_back(place);
+        box.values.push_back(level(random));
+    }
+    for (int n = 0; n < size * size * size; ++n) {
+        const int i = n % size, j = n / size % size, k = n / size / size;
+        for (const auto& [a, b, c] : {std::array{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) {
+            box.hexes.push_back(id(i + a, j + b, k + c));
+        }
+        std::array<int, 3> order{0, 1, 2};
+        do {
+            std::array<int, 3> at{i, j, k};
+            box.tets.push_back(id(at[0], at[1], at[2]));
+            for (const int axis : order) {
+                ++at[static_cast<std::size_t>(axis)];
+                box.tets.push_back(id(at[0], at[1], at[2]));
+            }
+        } while (std::next_permutation(order.begin(), order.end()));
+    }
+    return box;
+}
+
+void walks_find_what_a_full_scan_finds() {
+    std::mt19937 random(1);
+    for (int trial = 0; trial < 20; ++trial) {
+        Box box = make_box(1 + trial % 4, random);
+        if (trial % 5 == 0) box.values[0] = std::numeric_limits<double>::quiet_NaN();
+        if (trial % 2) box.tets.clear();
+        else box.hexes.clear();
+        const mesh::Field<double> field{box.points.data(), box.values.data(), box.values.size()};
+        const std::size_t tets = box.tets.size() / 4, hexes = box.hexes.size() / 8;
+        thinning::Index index = thinning::build(field, {box.tets.data(), box.hexes.data(), tets, hexes});
+        std::vector<double> points, values;
+        for (const std::int32_t point : index.points) {
+            points.insert(points.end(), field.point(point), field.point(point) + 3);
+            values.push_back(field.value(point));
+        }
+        std::vector<std::uint8_t> tets_visited(tets), hexes_visited(hexes);
+        std::vector<std::int32_t> vertex_of_edge(index.edge_count, -1);
+        const auto view = [](const thinning::Part& part, std::vector<std::uint8_t>& visited) {
+            return thinning::PartView{part.records.data(), part.skeleton.data(), part.low.data(), part.high.data(), visited.size(), part.skeleton.size(), visited.data()};
+        };
+        const thinning::IndexView at{view(index.tets, tets_visited), view(index.hexes, hexes_visited), index.points.data(), vertex_of_edge.data()};
+        for (const double isovalue : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.5, 4.0, 9.0}) {
+            const auto walked = thinning::propagate(mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);
+            const auto scanned = marching_cells::march(field, {box.tets.data(), box.hexes.data(), tets, hexes}, isovalue, 1);
+            CHECK(walked.visited == scanned.intersected);
+            CHECK(walked.triangles.size() == scanned.triangles.size());
+            CHECK(walked.vertices.size() == scanned.vertices.size());
+        }
+        CHECK(std::all_of(vertex_of_edge.begin(), vertex_of_edge.end(), [](std::int32_t vertex) { return vertex == -1; }));
+    }
+}
+
+void walks_through_volumes_find_what_marching_cubes_finds() {
+    std::mt19937 random(2);
+    std::uniform_int_distribution<int> level(0, 4);
+    for (int trial = 0; trial < 20; ++trial) {
+        const Dims dims{2u + static_cast<std::size_t>(trial) % 4, 3, 2u + static_cast<std::size_t>(trial) % 3};
+        std::vector<std::uint8_t> samples(dims[0] * dims[1] * dims[2]);
+        for (auto& sample : samples) sample = static_cast<std::uint8_t>(level(random));
+        const GridView<std::uint8_t> grid{samples.data(), dims};
+        const thinning::GridOptions options{trial % 2 == 1, trial % 3 == 1};
+        const auto skeleton = thinning::thin_grid(grid, options);
+        const std::size_t pad = options.capped ? 1 : 0;
+        std::vector<std::uint8_t> visited((dims[0] + 2 * pad - 1) * (dims[1] + 2 * pad - 1) * (dims[2] + 2 * pad - 1));
+        const thinning::GridSkeletonView view{skeleton.cells.data(), skeleton.low.data(), skeleton.high.data(), skeleton.cells.size(), visited.data()};
+        for (const double isovalue : {0.0, 1.0, 2.5, 4.0, 7.0}) {
+            const auto walked = thinning::propagate_grid(grid, view, isovalue, options, 1 + trial % 3);
+            marching_cubes::Options asked;
+            asked.isovalue = isovalue;
+            asked.below = options.below;
+            asked.capped = options.capped;
+            const auto marched = marching_cubes::march<std::uint8_t, double>(grid, asked);
+            CHECK(walked.triangles.size() == marched.triangles.size());
+            CHECK(walked.vertices.size() == marched.vertices.size());
+        }
+    }
+}
+
+void a_lookup_finds_every_interval_that_holds_a_value() {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> anywhere(0, 1);
+    for (const std::size_t size : {0u, 1u, 15u, 16u, 17u, 256u, 257u, 5000u}) {
+        std::vector<double> low(size), high(size);
+        for (double& end : low) end = anywhere(random);
+        std::sort(low.begin(), low.end());
+        for (std::size_t n = 0; n < size; ++n) high[n] = low[n] + 0.1 * anywhere(random);
+        const thinning::RangeLookup lookup(low.data(), high.data(), size);
+        for (double value = -0.1; value < 1.2; value += 0.05) {
+            std::vector<std::size_t> found, there;
+            lookup.find(value, [&](std::size_t n) { found.push_back(n); });
+            for (std::size_t n = 0; n < size; ++n) {
+                if (low[n] < value && value <= high[n]) there.push_back(n);
+            }
+            CHECK(found == there);
+        }
+    }
+}
+
+// Every triangle has the inside corners of its cell behind it.
+void triangles_of_a_tetrahedron_face_outside() {
+    constexpr std::array<std::array<double, 3>, 4> kPlaces{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (unsigned signs = 1; signs < 15; ++signs) {
+        const mesh::TetCase& drawn = mesh::kTetCases[signs];
+        CHECK(drawn.triangles == (std::popcount(signs) == 2 ? 2 : 1));
+        for (std::size_t t = 0; t < drawn.triangles; ++t) {
+            std::array<std::array<double, 3>, 3> corner;
+            for (std::size_t n = 0; n < 3; ++n) {
+                const auto& ends = mesh::Tet::kShape.ends[drawn.edges[3 * t + n]];
+                CHECK(((signs >> ends[0] ^ signs >> ends[1]) & 1) == 1);
+                for (std::size_t axis = 0; axis < 3; ++axis) corner[n][axis] = (kPlaces[ends[0]][axis] + kPlaces[ends[1]][axis]) / 2;
+            }
+            const auto side = [&](std::size_t n, std::size_t axis) { return corner[n][axis] - corner[0][axis]; };
+            for (unsigned c = 0; c < 4; ++c) {
+                double height = 0;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+                    height += (kPlaces[c][axis] - corner[0][axis]) * (side(1, u) * side(2, v) - side(1, v) * side(2, u));
+                }
+                CHECK(signs >> c & 1 ? height < 0 : height > 0);
+            }
+        }
+    }
+}
+
+// Two cells never draw a diagonal in the face they share, since none is drawn in any face.
+void no_hexahedron_draws_a_diagonal_in_a_face() {
+    for (const mesh::HexCase& drawn : mesh::kHexCases.cases) {
+        CHECK(drawn.middles <= drawn.loops);
+        for (std::size_t n = 0; n < 3u * drawn.triangles; ++n) {
+            const int a = drawn.edges[n], b = drawn.edges[n % 3 == 2 ? n - 2 : n + 1];
+            if (a >= 12 || b >= 12) continue;
+            int uses = 0;
+            for (std::size_t m = 0; m < 3u * drawn.triangles; ++m) {
+                uses += drawn.edges[m] == b && drawn.edges[m % 3 == 2 ? m - 2 : m + 1] == a;
+            }
+            if (uses > 0) CHECK(cube::shared_face(a, b) < 0);
+        }
+    }
+}
+
+void connectedness_is_that_of_corners_and_edges() {
+    CHECK(!thinning::connected<mesh::Tet>(0, 0));
+    CHECK(thinning::connected<mesh::Tet>(1, 0));
+    CHECK(!thinning::connected<mesh::Tet>(3, 0));
+    CHECK(thinning::connected<mesh::Tet>(3, 1));
+    CHECK(thinning::connected<mesh::Hex>(0xff, 0xfff));
+    CHECK(!thinning::connected<mesh::Hex>(0xff, 0xf));
+}
+
+}  // namespace
+
+void test_thinning() {
+    triangles_of_a_tetrahedron_face_outside();
+    no_hexahedron_draws_a_diagonal_in_a_face();
+    connectedness_is_that_of_corners_and_edges();
+    a_lookup_finds_every_interval_that_holds_a_value();
+    walks_find_what_a_full_scan_finds();
+    walks_through_volumes_find_what_marching_cubes_finds();
+}
