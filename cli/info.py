@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -61,7 +62,7 @@ def _record(path: Path, found: Description) -> dict[str, Any]:
 
 
 def _lines(path: Path, found: Description) -> list[str]:
-    lines = [click.style(str(path), bold=True)]
+    lines = [str(path) if os.environ.get("NO_COLOR") else click.style(str(path), bold=True)]
     lines += [f"  {key:<12} {_line(key, value)}" for key, value in found.facts.items() if _worth_a_line(key, value)]
     lines += [f"  {'warning':<12} {warning}" for warning in found.facts["warnings"]]
     lines += drawn(found.spread.coarse(_WIDTH))

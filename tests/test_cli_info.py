@@ -1,0 +1,103 @@
+"""`isocore info`, and the facts behind it."""
+
+from __future__ import annotations
+
+import json
+from itertools import permutations, product
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+from isocore.cli.info import drawn, info
+from shapes import SAMPLES
+from small_files import ball, write_nifti
+
+from isocore.cell_mesh import CellMesh
+from isocore.describe import orientation
+from isocore.extrema import count_extrema
+from isocore.volume import Volume
+
+
+def run(*arguments: object) -> Result:
+    return CliRunner().invoke(info, [str(argument) for argument in arguments])
+
+
+def test_a_volume_is_described(tmp_path: Path) -> None:
+    """Shape, type, spacing, orientation, range, and an isovalue with its option."""
+    result = run(write_nifti(tmp_path / "ball.nii", ball(dtype="int16"), slope=2.0, intercept=1.0))
+    assert result.exit_code == 0
+    for text in ("12 x 12 x 12", "int16", "1 x 1 x 1", "RAS", "1 to ", "slope", "-i auto", "log scale"):
+        assert text in result.stdout
+
+
+def test_json_holds_the_same(tmp_path: Path) -> None:
+    """One object per file, also where another cannot be read."""
+    good = write_nifti(tmp_path / "ball.nii", ball())
+    result = run(good, tmp_path / "missing.nii", "--json")
+    (found,) = json.loads(result.stdout)
+    assert result.exit_code == 1 and "missing.nii" in result.stderr
+    assert found["orientation"] == "RAS" and found["nonfinite"] == 0 and sum(found["histogram"]["counts"]) == 12**3
+
+
+def test_several_volumes_are_counted(tmp_path: Path) -> None:
+    """The first is described where none is chosen."""
+    series = write_nifti(tmp_path / "series.nii", np.stack([ball(), ball() * 0], axis=3))
+    assert json.loads(run(series, "--json").stdout)[0]["volumes"] == 2
+    empty = run(series, "--volume", 1).stdout
+    assert "do not differ" in empty
+
+
+def test_samples_that_are_not_finite_are_counted(tmp_path: Path) -> None:
+    """And left out of the range."""
+    samples = ball()
+    samples[0, 0, :3] = [np.nan, np.inf, -np.inf]
+    found = json.loads(run(write_nifti(tmp_path / "ball.nii", samples), "--json").stdout)[0]
+    assert found["nonfinite"] == 3 and found["range"][0] == 0
+
+
+def test_a_mesh_is_described() -> None:
+    """Cells by type, fields, extrema."""
+    found = json.loads(run(*sorted(SAMPLES.glob("*.vtu")), "--json").stdout)
+    assert len(found) == 2
+    for mesh in found:
+        assert mesh["cells"] and mesh["point fields"] and mesh["minima"] > 0 and mesh["maxima"] > 0
+
+
+def test_extrema_follow_the_order_of_value_and_number() -> None:
+    """A constant field has one of each; a vertex above all others is the only maximum."""
+    points = np.array([(i, j, k) for k in range(2) for j in range(2) for i in range(3)], np.float64)
+    hexes = np.array([[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]], np.int32)
+
+    def extrema(values: list[float]) -> tuple[int, int]:
+        array = np.array(values, np.float32)
+        return count_extrema(CellMesh(points.copy(), np.zeros((0, 4), np.int32), hexes.copy(), array))
+
+    assert extrema([1.0] * 12) == (1, 1)
+    assert extrema([float(value) for value in points @ [1, 10, 100]]) == (1, 1)
+    assert extrema([5.0 if value % 2 else 1.0 for value in points.sum(axis=1)]) == (6, 6)
+
+
+@pytest.mark.parametrize("space", ["ras", "lps", "las"])
+def test_orientation_names_all_48_ways(space: str) -> None:
+    """As letters of where each index axis grows to."""
+    sides = (("L", "R"), ("P", "A"), ("I", "S"))
+    seen = set()
+    for order, signs in product(permutations(range(3)), product((-1, 1), repeat=3)):
+        affine = np.eye(4)
+        affine[:3, :3] = 0
+        for column, (row, sign) in enumerate(zip(order, signs, strict=True)):
+            affine[row, column] = sign * (column + 1)
+        volume = Volume(np.zeros((2, 2, 2), np.uint8, order="F"), affine=affine, space="ras").in_space(space)  # type: ignore[arg-type]
+        letters, oblique = orientation(volume)
+        assert letters == "".join(sides[row][sign > 0] for row, sign in zip(order, signs, strict=True))
+        assert not oblique
+        seen.add(letters)
+    assert len(seen) == 48
+
+
+def test_a_histogram_is_drawn_in_the_width_it_has() -> None:
+    """Every bin a column, rare values still visible."""
+    lines = drawn({"low": 0.0, "high": 4.0, "counts": [1_000_000, 0, 1, 5]})
+    assert len(lines) == 7 and all(len(line) <= 6 for line in lines[:-1])
+    assert lines[0].strip() == "█" and lines[-2][4] != " " and lines[-2][3] == " "
