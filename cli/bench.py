@@ -11,12 +11,19 @@ from .options import PATH, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
     from isocore.thinning_bench import Table
+    from isocore.volume import Volume
 
 
 @click.command(short_help="The papers' tables on your own data.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
-@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="How many, evenly spaced.")
+@click.option("-i", "--isovalue", metavar="V", help="Volumes: a number, otsu or pNN; default as in convert.")
+@click.option("--csv", type=PATH, metavar="FILE", help="Volumes: the table as CSV.")
+@click.option("--markdown", type=PATH, metavar="FILE", help="Volumes: the table as Markdown.")
+@click.option("--plot", type=PATH, metavar="FILE", help="Volumes: triangles and time by block size, SVG.")
+@click.option(
+    "--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes: how many."
+)
 @click.option("--threads", default=None, type=click.IntRange(1), help="Threads for drawing.")
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
@@ -28,11 +35,15 @@ def bench(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Time every way to find an isosurface's cells in each mesh FILE, and print the tables of the thinning paper.
+    """Print the papers' tables for each FILE: a volume's triangles, time and error by block size and error bound, or
+    the time every way to find an isosurface's cells takes in a mesh.
 
     \b
+    isocore bench sample_volumes/knot.nii.gz -i 200 --plot knot.svg
     isocore bench sample_volumes/torus.vtu
     """
+    if len(files) > 1 and any(chosen[option] for option in ("csv", "markdown", "plot")):
+        raise click.UsageError("--csv, --markdown and --plot name one file; give one FILE")
     from isocore.errors import IsocoreError
 
     failures = 0
@@ -62,12 +73,31 @@ def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) ->
     from isocore.thinning_bench import mesh_bench
 
     field = read(path, read_options(chosen))
-    if not isinstance(field, CellMesh):
-        raise FieldError(f"{path}: is a volume; bench takes meshes")
     try:
+        if not isinstance(field, CellMesh):
+            return [_volume_table(field, threads, chosen)]
         return mesh_bench(field, isovalues=isovalues, threads=threads)
     except FieldError as error:
         raise FieldError(f"{path}: {error}") from error
+
+
+def _volume_table(volume: Volume, threads: int, chosen: dict[str, Any]) -> Table:
+    from isocore.climbing_bench import render_csv, render_markdown, volume_bench
+    from isocore.climbing_plot import render_svg
+    from isocore.histogram import histogram
+    from isocore.isovalue import choose, parse_choices
+    from isocore.whole_file import whole_file
+
+    asked = parse_choices((chosen["isovalue"],) if chosen["isovalue"] else ())
+    if len(asked) != 1:
+        raise click.UsageError(f"-i {chosen['isovalue']}: bench takes one isovalue")
+    found = volume_bench(volume, choose(asked[0], histogram(volume, threads=threads)).isovalue, threads=threads)
+    table = found.table()
+    for option, text in (("csv", render_csv(table)), ("markdown", render_markdown(table)), ("plot", render_svg(found))):
+        if chosen[option] is not None:
+            with whole_file(chosen[option]) as stream:
+                stream.write(text.encode())
+    return table
 
 
 def _record(table: Table) -> dict[str, Any]:

@@ -40,6 +40,7 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.option("--normals/--no-normals", help="Write vertex normals from the samples' gradient.")
 @click.option("--cap/--no-cap", help="Close the surface at the volume's border.")
 @reading_options
+@click.option("--ambiguities", type=PATH, metavar="FILE", help="Write the ambiguous places as points, PLY.")
 @click.option("--reference/--no-reference", default=True, help="Run marching cubes too, to compare; default on.")
 @click.option("--require", metavar="LIST", help=f"Any of {' '.join(REQUIREMENTS)}; a miss is exit code 3.")
 @click.option("--max-triangles", type=click.IntRange(min=0), metavar="N", help="More is exit code 3.")
@@ -140,9 +141,12 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
         max_triangles=chosen["max_triangles"],
         if_changed=chosen["if_changed"] or chosen["force"],
         force=chosen["force"],
+        ambiguities=chosen["ambiguities"],
     )
     naming = Naming(output=chosen["output"], output_dir=chosen["output_dir"], template=chosen["name"])
     jobs = plan(find_inputs(names), parse_choices(chosen["isovalues"]), pattern, naming, volumes=chosen["volume"])
+    if chosen["ambiguities"] and (len(jobs) != 1 or len(jobs[0].targets) != 1):
+        raise click.UsageError(f"--ambiguities {chosen['ambiguities']}: is one file; give one input and one isovalue")
     threads = chosen["threads"] or max(1, default_threads() // min(at_once(chosen), len(jobs)))
     return [replace(job, options=replace(options, threads=threads)) for job in jobs]
 

@@ -36,7 +36,13 @@ def climb(
     max_error: float = ...,
     in_world: bool = False,
     spacing: tuple[float, float, float] = ...,
+    measured: bool = True,
 ) -> tuple[_Real, _Int32, dict[str, Any]]: ...
+
+# ambiguities: (places (n, 3) in index space, saddle distances (n,))
+def ambiguities(
+    samples: _Samples, isovalue: float, below: bool = False, threads: int = 1
+) -> tuple[_Float64, _Float64]: ...
 
 # surface: vertices (v, 3), triangles (t, 3), normals (v, 3), affine (3, 4); `out` and `flip` write in place
 # measure: ((components, boundary edges, non-manifold edges, non-manifold vertices, misoriented edges, Euler

@@ -12,8 +12,9 @@ from time import perf_counter
 from typing import Any, BinaryIO, ParamSpec, TypeVar, cast
 
 from isocore import compose
+from isocore.ambiguities import find_ambiguities, write_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Options, default_backend, prepare
-from isocore.errors import FieldError, IsocoreError, writing
+from isocore.errors import FieldError, IsocoreError, OptionError, writing
 from isocore.histogram import histogram
 from isocore.index_file import index_path
 from isocore.isovalue import choose
@@ -51,6 +52,7 @@ class Job:
     format: of the outputs, "ply", "obj" or "stl".
     backend: by name, or None for the default of the field.
     space: of the outputs, "native" for the file's own.
+    ambiguities: where the ambiguous faces go, for a job of one target.
     require: names out of compose.REQUIREMENTS; max_triangles: a further one.
     if_changed: leave outputs alone that are up to date (stamps.py); force: not even those.
     Both are the batch's business.
@@ -66,6 +68,7 @@ class Job:
     reference: bool = True
     require: tuple[str, ...] = ()
     max_triangles: int | None = None
+    ambiguities: Path | None = None
     if_changed: bool = False
     force: bool = False
 
@@ -108,6 +111,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                 found = timer.timed("extract", extract, chosen.isovalue)
                 measured = timer.timed("measure", measure, found.surface, threads=job.options.threads)
                 written = timer.timed("write", _write, found.surface, target.output, job)
+                timer.timed("write", _write_ambiguities, source, chosen.isovalue, job)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
@@ -193,6 +197,14 @@ def _write(surface: Surface, target: Path, job: Job) -> _Written:
         if target == STDOUT:
             sys.stdout.buffer.flush()
     return written
+
+
+def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
+    if job.ambiguities is None:
+        return
+    if not isinstance(source, Volume):
+        raise OptionError(f"--ambiguities {job.ambiguities}: is for volumes only; leave it out")
+    write_ambiguities(job.ambiguities, find_ambiguities(source, isovalue, threads=job.options.threads))
 
 
 class _Reference:

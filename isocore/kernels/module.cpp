@@ -5,6 +5,7 @@
 NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_processor(module);
     isocore::python::bind_climbing(module);
+    isocore::python::bind_ambiguities(module);
     isocore::python::bind_marching_cubes(module);
     isocore::python::bind_surface(module);
     isocore::python::bind_marching_cells(module);

@@ -47,7 +47,17 @@ class Block {
         directions_ = {};
         alternating_ = 0;
         for (int k = 0; k <= N; ++k) {
-            for (int j = 0; j <= N; ++j) look(j, k, j < N, k < N, kSamples, kSamples >> 1, directions_, alternating_);
+            for (int j = 0; j <= N; ++j) {
+                const Word row = samples(j, k), starts = kSamples >> 1;
+                const auto pass = [&](std::size_t axis, Word next, Word valid) {
+                    directions_[axis][0] |= ~row & next & valid;
+                    directions_[axis][1] |= row & ~next & valid;
+                };
+                pass(0, row >> 1, starts);
+                if (j < N) pass(1, samples(j + 1, k), kSamples);
+                if (k < N) pass(2, samples(j, k + 1), kSamples);
+                alternating_ |= alternating(j, k, j < N, k < N, kSamples, starts);
+            }
         }
         for (int k = 0; k <= N; ++k) survey_x(k);
         survey_across<false>();
@@ -81,17 +91,14 @@ class Block {
 
     // Of a simple box: with disk corners it then holds a disk, whatever happens between its corners.
     bool graph(Label x, Label y, Label z) const {
-        if (is_graph(directions_, alternating_ != 0)) return true;
-        Directions directions{};
-        Word alternating = 0;
-        const Word here = mask(Dikes::start(x), Dikes::end(x));
-        for (int k = Dikes::start(z); k <= Dikes::end(z); ++k) {
-            for (int j = Dikes::start(y); j <= Dikes::end(y); ++j) {
-                look(j, k, j < Dikes::end(y), k < Dikes::end(z), here, here >> 1 & here, directions, alternating);
-            }
+        if (alternating_ && alternates(x, y, z)) return false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!directions_[axis][0] || !directions_[axis][1]) return true;
         }
-        return is_graph(directions, alternating != 0);
+        return one_way<1>(x, y, z) || one_way<2>(x, y, z) || one_way<0>(x, y, z);
     }
+
+    Word samples(int j, int k) const { return samples_[index(k)][index(j)]; }
 
     std::array<int, 3> cells{};  // per axis; fewer than N at the volume's end
 
@@ -104,37 +111,38 @@ class Block {
         return static_cast<Word>(((std::uint64_t{2} << last) - 1) & ~((std::uint64_t{1} << first) - 1));
     }
 
-    // Crossings into and out of the inside, per axis.
-    using Directions = std::array<std::array<Word, 2>, 3>;
-
-    static bool is_graph(const Directions& directions, bool alternating) {
-        const auto one_way = [&](std::size_t axis) { return directions[axis][0] == 0 || directions[axis][1] == 0; };
-        return !alternating && (one_way(0) || one_way(1) || one_way(2));
+    // Are all ligns of the box along an axis crossed in the same direction, if at all?
+    template <int axis>
+    bool one_way(Label x, Label y, Label z) const {
+        const Word here = mask(Dikes::start(x), Dikes::end(x)), valid = axis == 0 ? here >> 1 & here : here;
+        Word in = 0, out = 0;
+        for (int k = Dikes::start(z); k <= Dikes::end(z) - (axis == 2); ++k) {
+            for (int j = Dikes::start(y); j <= Dikes::end(y) - (axis == 1); ++j) {
+                const Word row = samples(j, k), next = axis == 0 ? row >> 1 : axis == 1 ? samples(j + 1, k) : samples(j, k + 1);
+                in |= ~row & next & valid;
+                out |= row & ~next & valid;
+            }
+        }
+        return in == 0 || out == 0;
     }
 
-    // Adds what row (j, k) and its next neighbours, where they belong to the box, tell of the samples `here`; `starts`
-    // are those with a next neighbour along the row.
-    void look(int j, int k, bool next_j, bool next_k, Word here, Word starts, Directions& directions, Word& alternating) const {
-        const Word row = samples_[index(k)][index(j)];
-        const auto pass = [&](std::size_t axis, Word next, Word valid) {
-            directions[axis][0] |= ~row & next & valid;
-            directions[axis][1] |= row & ~next & valid;
-        };
-        const auto alternates = [&](Word a, Word b) { return (a ^ a >> 1) & (b ^ b >> 1) & (a ^ b) & starts; };
-        pass(0, row >> 1, starts);
-        if (next_j) {
-            pass(1, samples_[index(k)][index(j + 1)], here);
-            alternating |= alternates(row, samples_[index(k)][index(j + 1)]);
+    // Has a cell face in the box alternating corners?
+    bool alternates(Label x, Label y, Label z) const {
+        const Word here = mask(Dikes::start(x), Dikes::end(x)), starts = here >> 1 & here;
+        Word found = 0;
+        for (int k = Dikes::start(z); k <= Dikes::end(z); ++k) {
+            for (int j = Dikes::start(y); j <= Dikes::end(y); ++j) found |= alternating(j, k, j < Dikes::end(y), k < Dikes::end(z), here, starts);
         }
-        if (next_k) {
-            pass(2, samples_[index(k + 1)][index(j)], here);
-            alternating |= alternates(row, samples_[index(k + 1)][index(j)]);
-        }
-        if (next_j && next_k) {
-            const Word right = samples_[index(k)][index(j + 1)], up = samples_[index(k + 1)][index(j)];
-            const Word both = samples_[index(k + 1)][index(j + 1)];
-            alternating |= (row ^ right) & (row ^ up) & ~(row ^ both) & here;
-        }
+        return found != 0;
+    }
+
+    // The alternating cell faces that start in row (j, k), of the samples `here` and the cells `starts`.
+    Word alternating(int j, int k, bool next_j, bool next_k, Word here, Word starts) const {
+        const Word row = samples(j, k), right = next_j ? samples(j + 1, k) : row, up = next_k ? samples(j, k + 1) : row;
+        const auto in_plane = [&](Word other) { return (row ^ row >> 1) & (other ^ other >> 1) & (row ^ other) & starts; };
+        Word found = in_plane(right) | in_plane(up);
+        if (next_j && next_k) found |= (row ^ right) & (row ^ up) & ~(row ^ samples(j + 1, k + 1)) & here;
+        return found;
     }
 
     // For each row of plane k: bit middle(x) tells that dike x is crossed several times. Middles of all dikes differ.
@@ -201,7 +209,7 @@ class Block {
     std::array<std::array<Word, N + 1>, N + 1> rows_x_;   // [j][k]
     std::array<std::array<Word, N + 1>, 2 * N> rows_y_, rows_z_;
     std::array<std::array<Word, 2 * N>, 2 * N> several_x_, several_yz_;  // [y][z]
-    Directions directions_;                                              // of the whole block
+    std::array<std::array<Word, 2>, 3> directions_;                      // crossings of the block into and out of the inside
     Word alternating_;
 };
 

@@ -27,6 +27,7 @@ struct Options {
     double max_error = std::numeric_limits<double>::infinity();
     bool in_world = false;
     std::array<double, 3> spacing{1, 1, 1};
+    bool measured = true;  // without, the deviations stay 0 and the bound rests on the flatness of the boxes alone
 };
 
 // Distances of marching cubes' vertices to the surface, over all of them.

@@ -10,11 +10,12 @@
 
 namespace isocore::climbing {
 
-// In samples of the whole grid; both ends belong to it.
+// In samples from its block's origin; both ends belong to it.
 struct HighRice {
-    std::array<std::int32_t, 3> low, high;
+    std::array<std::uint8_t, 3> low, high;
 
-    bool is_cell() const { return high[0] - low[0] == 1 && high[1] - low[1] == 1 && high[2] - low[2] == 1; }
+    int length(std::size_t axis) const { return high[axis] - low[axis]; }
+    bool is_cell() const { return length(0) == 1 && length(1) == 1 && length(2) == 1; }
 };
 
 // What a simple box holds, by its eight corner signs (corner numbers as in cube.hpp).

@@ -9,12 +9,18 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "climbing/high_rice.hpp"
 #include "common/array.hpp"
 #include "common/edge_vertices.hpp"
 
 namespace isocore::climbing {
+
+struct GridEdge {
+    int axis;
+    Dims low;
+};
 
 class Layout {
   public:
@@ -23,9 +29,10 @@ class Layout {
         bases_.resize(rows_);
     }
 
-    void mark(const HighRice& box) {
-        const auto [x0, y0, z0] = places(box.low);
-        const auto [x1, y1, z1] = places(box.high);
+    void mark(const Dims& origin, const HighRice& box) {
+        const std::size_t x0 = origin[0] + box.low[0], x1 = origin[0] + box.high[0];
+        const std::size_t y0 = origin[1] + box.low[1], y1 = origin[1] + box.high[1];
+        const std::size_t z0 = origin[2] + box.low[2], z1 = origin[2] + box.high[2];
         const std::uint64_t along = (std::uint64_t{2} << (x1 - 1) % 64) - (std::uint64_t{1} << x0 % 64);
         for (const std::size_t j : {y0, y1}) {
             for (const std::size_t k : {z0, z1}) word(0, x0 / 64, j, k) |= along;
@@ -41,6 +48,36 @@ class Layout {
         }
     }
 
+    // Marks a late box and notes the crossed edges that were not kept before.
+    void insert(const Dims& origin, const HighRice& box, std::vector<GridEdge>& inserted) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+            for (const std::size_t at_u : {box.low[u], box.high[u]}) {
+                for (const std::size_t at_v : {box.low[v], box.high[v]}) {
+                    for (std::size_t along = box.low[axis]; along < box.high[axis]; ++along) {
+                        GridEdge edge{static_cast<int>(axis), origin};
+                        edge.low[u] += at_u, edge.low[v] += at_v, edge.low[axis] += along;
+                        const auto [i, j, k] = edge.low;
+                        std::uint64_t& kept = word(edge.axis, i / 64, j, k);
+                        const std::uint64_t bit = std::uint64_t{1} << i % 64;
+                        if ((kept & bit) || !(crossed_edges(signs_, edge.axis, j, k, i / 64) & bit)) continue;
+                        kept |= bit;
+                        inserted.push_back(edge);
+                    }
+                }
+            }
+        }
+    }
+
+    // The vertex number of a kept edge.
+    std::size_t number(const GridEdge& edge) const {
+        const auto [i, j, k] = edge.low;
+        const std::uint64_t* bits = row(static_cast<std::size_t>(edge.axis), j, k);
+        std::size_t out = base(j, k)[static_cast<std::size_t>(edge.axis)];
+        for (std::size_t w = 0; w < i / 64; ++w) out += static_cast<std::size_t>(std::popcount(bits[w]));
+        return out + static_cast<std::size_t>(std::popcount(bits[i / 64] & ((std::uint64_t{1} << i % 64) - 1)));
+    }
+
     // Keeps of the marks those that are crossed, and counts them.
     void count_row(std::size_t j, std::size_t k) {
         RowBase& counts = bases_[j + signs_.dims[1] * k];
@@ -54,7 +91,7 @@ class Layout {
         }
     }
 
-    // Turns counts into numbers; returns the number of vertices.
+    // Turns counts into numbers, once; returns the number of vertices.
     std::size_t number() {
         std::size_t next = 0;
         for (RowBase& row : bases_) {
@@ -85,20 +122,11 @@ class Layout {
     std::uint64_t kept(int axis, std::size_t w, std::size_t j, std::size_t k) const {
         return marks_[static_cast<std::size_t>(axis)][(j + signs_.dims[1] * k) * signs_.words + w];
     }
-    bool is_kept(int axis, std::size_t i, std::size_t j, std::size_t k) const { return kept(axis, i / 64, j, k) >> i % 64 & 1; }
-
-    // The vertex number of a kept edge.
-    std::uint32_t vertex(int axis, std::size_t i, std::size_t j, std::size_t k) const {
-        std::uint32_t number = base(j, k)[static_cast<std::size_t>(axis)];
-        for (std::size_t w = 0; w < i / 64; ++w) number += static_cast<std::uint32_t>(std::popcount(kept(axis, w, j, k)));
-        const std::uint64_t below = (std::uint64_t{1} << i % 64) - 1;
-        return number + static_cast<std::uint32_t>(std::popcount(kept(axis, i / 64, j, k) & below));
+    const std::uint64_t* row(std::size_t axis, std::size_t j, std::size_t k) const {
+        return marks_[axis].data() + (j + signs_.dims[1] * k) * signs_.words;
     }
 
   private:
-    static std::array<std::size_t, 3> places(const std::array<std::int32_t, 3>& sample) {
-        return {static_cast<std::size_t>(sample[0]), static_cast<std::size_t>(sample[1]), static_cast<std::size_t>(sample[2])};
-    }
     std::uint64_t& word(int axis, std::size_t w, std::size_t j, std::size_t k) {
         return marks_[static_cast<std::size_t>(axis)][(j + signs_.dims[1] * k) * signs_.words + w];
     }

@@ -28,6 +28,7 @@ class Polygon {
     void cut(const Draw& draw) {
         const std::size_t n = corners.size();
         if (n == 3) return draw(0, 1, 2);
+        if (n == 4) return cut_four(draw);
         cost_.assign(n * n, 0);
         apex_.assign(n * n, 0);
         for (std::size_t span = 2; span < n; ++span) {
@@ -47,6 +48,21 @@ class Polygon {
     }
 
   private:
+    // What find_apex() would find, without its tables: most loops are this short.
+    template <class Draw>
+    void cut_four(const Draw& draw) const {
+        const auto price = [&](std::size_t a, std::size_t b, std::size_t c) { return area(corners[a].place, corners[b].place, corners[c].place); };
+        const bool may_even = !(corners[0].faces & corners[2].faces), may_odd = !(corners[1].faces & corners[3].faces);
+        if (!may_even && !may_odd) throw std::logic_error("a loop has no legal triangulation");
+        if (may_even && (!may_odd || price(0, 2, 3) + price(0, 1, 2) < price(0, 1, 3) + price(1, 2, 3))) {
+            draw(0, 2, 3);
+            draw(0, 1, 2);
+        } else {
+            draw(0, 1, 3);
+            draw(1, 2, 3);
+        }
+    }
+
     void find_apex(std::size_t i, std::size_t j) {
         const std::size_t n = corners.size();
         double best = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing), once per sample type.
+// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing,
+// measured), once per sample type.
 #include <nanobind/stl/array.h>
 
 #include <algorithm>
@@ -49,14 +50,14 @@ void bind(nb::module_& module) {
     module.def(
         "climb",
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size, double max_error,
-           bool in_world, std::array<double, 3> spacing) {
-            const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing};
+           bool in_world, std::array<double, 3> spacing, bool measured) {
+            const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured};
             const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
             return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
         nb::arg("block_size") = 16, nb::arg("max_error") = std::numeric_limits<double>::infinity(),
-        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1});
+        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1}, nb::arg("measured") = true);
 }
 
 }  // namespace

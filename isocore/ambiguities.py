@@ -1,0 +1,61 @@
+"""Where a surface could have been drawn in two ways, shown instead of hidden.
+
+A cell face whose corners are alternately inside and outside does not say which corners belong together. We decide by
+the saddle of the bilinear interpolation (Nielson, Hamann, "The Asymptotic Decider", IEEE Visualization 1991): its
+distance from the isovalue says how close the decision was.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.volume import Volume
+from isocore.whole_file import whole_file
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ambiguities:
+    """The ambiguous faces of a volume at one isovalue, each once.
+
+    points: (n, 3) float64, world: the saddle of each face.
+    distances: (n,) float64, scaled value of the saddle minus the isovalue; not below 0 where the inside was joined.
+    space, unit: as in Volume.
+    """
+
+    points: npt.NDArray[np.float64]
+    distances: npt.NDArray[np.float64]
+    space: str
+    unit: str
+
+
+def find_ambiguities(volume: Volume, isovalue: float, *, threads: int = 1) -> Ambiguities:
+    """The ambiguous faces of the volume's own cells; capping adds none."""
+    places, distances = _kernels.ambiguities(
+        volume.samples, volume.stored_isovalue(isovalue), volume.inside_is_below, threads
+    )
+    points = places @ volume.affine[:3, :3].T + volume.affine[:3, 3]
+    return Ambiguities(points, distances * abs(volume.slope), volume.space, volume.unit)
+
+
+def write_ambiguities(target: os.PathLike[str] | str, found: Ambiguities) -> None:
+    """Write a PLY of points with the scalar property `saddle_distance`, whole or not at all."""
+    row: Any = np.dtype([("place", "<f4", 3), ("saddle_distance", "<f4")])
+    rows = np.empty(len(found.points), row)
+    rows["place"], rows["saddle_distance"] = found.points, found.distances
+    lines = ["ply", "format binary_little_endian 1.0"]
+    if found.space != "native":
+        lines.append(f"comment SPACE={found.space.upper()}")
+    if found.unit:
+        lines.append(f"comment units {found.unit}")
+    lines.append(f"element vertex {len(rows)}")
+    lines += [f"property float {name}" for name in ("x", "y", "z", "saddle_distance")]
+    lines.append("end_header")
+    with whole_file(target) as stream:
+        stream.write(("\n".join(lines) + "\n").encode("ascii"))
+        stream.write(rows.tobytes())

@@ -1,0 +1,127 @@
+"""The table of the climbing paper for the user's own volume: triangles, time and error by block size and error bound.
+
+Poston, Wong, Heng, Computer Graphics Forum 17(3), 1998, section 5 compares block sizes with marching cubes; we add what
+an error bound costs, and the error as it was measured.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from statistics import median
+from time import perf_counter
+
+from isocore import _kernels
+from isocore.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, bound_for
+from isocore.errors import FieldError
+from isocore.thinning_bench import Table
+from isocore.volume import Volume
+
+MAX_ERRORS = ("none", "1", "0.5", "0.25", "0.1")
+_COLUMNS = (
+    "block size",
+    "max error",
+    "triangles",
+    "mc / asc",
+    "seconds",
+    "asc / mc",
+    "error max",
+    "error mean",
+    "error rms",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One way to draw the surface. seconds: the median; error: max, mean and rms in voxels."""
+
+    block_size: int
+    max_error: str
+    triangles: int
+    seconds: float
+    error: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class ClimbingBench:
+    """All runs on one volume at one isovalue, beside marching cubes."""
+
+    isovalue: float
+    mc_triangles: int
+    mc_seconds: float
+    runs: tuple[Run, ...]
+
+    def table(self) -> Table:
+        """The runs, one a row."""
+        title = f"Isovalue {self.isovalue:g}: marching cubes {self.mc_triangles:,} triangles, {self.mc_seconds:.4g} s"
+        return Table(title, _COLUMNS, tuple(self._row(run) for run in self.runs))
+
+    def _row(self, run: Run) -> tuple[str | int | float, ...]:
+        fewer, slower = self.mc_triangles / max(run.triangles, 1), run.seconds / self.mc_seconds
+        figures = (round(x, 4) for x in (run.seconds, slower, *run.error))
+        return (run.block_size, run.max_error, run.triangles, round(fewer, 2), *figures)
+
+
+def volume_bench(
+    volume: Volume,
+    isovalue: float,
+    *,
+    block_sizes: Sequence[int] = BLOCK_SIZES,
+    max_errors: Sequence[str] = MAX_ERRORS,
+    threads: int = 1,
+    repeats: int = 3,
+) -> ClimbingBench:
+    """Every block size without a bound, then every bound at the default block size.
+
+    Raises FieldError where marching cubes draws nothing, OptionError for a bound that makes no sense.
+    """
+    stored, below = volume.stored_isovalue(isovalue), volume.inside_is_below
+
+    def march() -> int:
+        return len(_kernels.marching_cubes(volume.samples, stored, below, False, threads)[1])
+
+    mc_seconds, mc_triangles = _median_of(march, repeats)
+    if mc_triangles == 0:
+        raise FieldError(f"isovalue {isovalue:g} draws no surface; choose another with -i")
+    plans = [(size, "none") for size in block_sizes]
+    plans += [(DEFAULT_BLOCK_SIZE, text) for text in max_errors if text != "none"]
+    runs = []
+    for size, text in plans:
+        bound = bound_for(volume, text)
+        facts: dict[str, tuple[float, float, float]] = {}
+
+        def climb(size: int = size, distance: float = bound.distance, in_world: bool = bound.in_world) -> int:
+            _, triangles, found = _kernels.climb(
+                volume.samples, stored, below, False, threads, size, distance, in_world, volume.spacing
+            )
+            facts.update(found)  # noqa: B023  # called before the loop goes on
+            return len(triangles)
+
+        seconds, triangles = _median_of(climb, repeats)
+        runs.append(Run(size, text, triangles, seconds, facts["error_voxels"]))
+    return ClimbingBench(isovalue, mc_triangles, mc_seconds, tuple(runs))
+
+
+def _median_of(work: Callable[[], int], repeats: int) -> tuple[float, int]:
+    """Median seconds after one warm-up, and what the work returned."""
+    result = work()
+    seconds = []
+    for _ in range(repeats):
+        start = perf_counter()
+        result = work()
+        seconds.append(perf_counter() - start)
+    return median(seconds), result
+
+
+def render_csv(table: Table) -> str:
+    """Headings and rows, separated by commas."""
+    return "".join(",".join(map(str, row)) + "\n" for row in (table.columns, *table.rows))
+
+
+def render_markdown(table: Table) -> str:
+    """The title in bold, then a table with numbers to the right."""
+    lines = [f"**{table.title}**", "", "| " + " | ".join(table.columns) + " |"]
+    lines.append("|" + "---:|" * len(table.columns))
+    for row in table.rows:
+        lines.append("| " + " | ".join(f"{x:,}" if isinstance(x, int) else str(x) for x in row) + " |")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,135 @@
+// bars.hpp - What is known of the rows of blocks, and what concerns all of them: marks, room for triangles, sums.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+#include "climbing/climb.hpp"
+#include "climbing/deviation.hpp"
+#include "climbing/layout.hpp"
+#include "climbing/partition.hpp"
+#include "common/parallel.hpp"
+#include "common/signs.hpp"
+
+namespace isocore::climbing {
+
+// What is known of a row of blocks along the first axis.
+struct Bar : BarBoxes {
+    std::size_t first_triangle = 0, triangles = 0, capacity = 0;  // of the triangle array
+    std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
+    std::size_t split_again = 0;
+    std::vector<std::size_t> broken;  // boxes that break the error bound
+    bool stale = true;                // boxes here or next to it have changed since it was measured
+    Deviation in_voxels, in_world;
+};
+
+struct Bars {
+    Dims blocks;
+    std::size_t block_size;
+    std::vector<Bar> bars;  // [z][y]
+    std::size_t triangles_at_most = 0;
+
+    // Calls visit(origin, first box, end of boxes) for every visited block of a bar.
+    template <class Visit>
+    void visit(std::size_t bar, const Visit& visit) const {
+        const HighRice* box = bars[bar].boxes.data();
+        for (const VisitedBlock& block : bars[bar].blocks) {
+            const HighRice* end = box + block.boxes;
+            visit(Dims{block.x, block_size * (bar % blocks[1]), block_size * (bar / blocks[1])}, box, end);
+            box = end;
+        }
+    }
+};
+
+inline Bars lay_out_bars(const SignGrid& signs, int block_size) {
+    if (block_size < 1 || block_size > 32 || !std::has_single_bit(static_cast<unsigned>(block_size))) {
+        throw std::invalid_argument("the block size must be 1, 2, 4, 8, 16 or 32");
+    }
+    Bars out;
+    out.block_size = static_cast<std::size_t>(block_size);
+    for (std::size_t a = 0; a < 3; ++a) out.blocks[a] = (signs.dims[a] - 2) / out.block_size + 1;
+    out.bars.resize(out.blocks[1] * out.blocks[2]);
+    return out;
+}
+
+// Marks every box in the layout. Layers of bars meet in one plane of samples, so they take turns.
+inline void mark_all(const Bars& bars, int threads, Layout& layout) {
+    const std::size_t layers = bars.blocks[2];
+    for (std::size_t parity = 0; parity < 2; ++parity) {
+        parallel_for(threads, (layers + 1 - parity) / 2, [&](std::size_t n) {
+            const std::size_t first = (2 * n + parity) * bars.blocks[1];
+            for (std::size_t bar = first; bar < first + bars.blocks[1]; ++bar) {
+                bars.visit(bar, [&](const Dims& origin, const HighRice* box, const HighRice* end) {
+                    for (; box != end; ++box) layout.mark(origin, *box);
+                });
+            }
+        });
+    }
+}
+
+// How many triangles a bar draws at most: a loop of n vertices gives n - 2, and a vertex lies on at most four boxes,
+// two of one bar if it lies on the bar's side, and one on the bar's edge. Never less than it was before.
+inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& bars) {
+    const std::size_t size = bars.block_size, last_j = signs.dims[1] - 1, last_k = signs.dims[2] - 1;
+    std::size_t next = 0;
+    for (std::size_t bar = 0; bar < bars.bars.size(); ++bar) {
+        const std::size_t j0 = size * (bar % bars.blocks[1]), j1 = std::min(j0 + size, last_j);
+        const std::size_t k0 = size * (bar / bars.blocks[1]), k1 = std::min(k0 + size, last_k);
+        std::size_t corners = 0;
+        for (std::size_t k = k0; k <= k1; ++k) {
+            for (std::size_t j = j0; j <= j1; ++j) {
+                const std::size_t sides_j = j == j0 || j == j1 ? 1 : 2, sides_k = k == k0 || k == k1 ? 1 : 2;
+                const auto counts = layout.row_counts(j, k);
+                corners += counts[0] * sides_j * sides_k;
+                if (j < j1) corners += counts[1] * 2 * sides_k;
+                if (k < k1) corners += counts[2] * 2 * sides_j;
+            }
+        }
+        Bar& here = bars.bars[bar];
+        here.capacity = std::max(here.capacity, corners - 2 * here.boxes.size());
+        here.first_triangle = next;
+        next += here.capacity;
+    }
+    bars.triangles_at_most = next;
+}
+
+inline std::size_t count_crossings(const SignGrid& signs, std::size_t j, std::size_t k) {
+    std::size_t count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t w = 0; w < signs.words; ++w) count += static_cast<std::size_t>(std::popcount(crossed_edges(signs, axis, j, k, w)));
+    }
+    return count;
+}
+
+// Closes the gaps that the bound left between the bars' triangles.
+inline void close_gaps(const Bars& bars, Array<std::int32_t>& triangles) {
+    std::size_t end = 0;
+    for (const Bar& bar : bars.bars) {
+        if (bar.first_triangle != end) {
+            const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * bar.first_triangle);
+            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * bar.triangles), triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
+        }
+        end += bar.triangles;
+    }
+    triangles.resize(3 * end);
+}
+
+inline Facts sum_facts(const Bars& bars) {
+    Facts facts;
+    facts.blocks = bars.blocks[0] * bars.blocks[1] * bars.blocks[2];
+    for (const Bar& bar : bars.bars) {
+        facts.highrices += bar.boxes.size();
+        facts.blocks_visited += bar.blocks.size();
+        facts.ambiguous_faces += bar.ambiguous_faces;
+        facts.ambiguous_cells += bar.ambiguous_cells;
+        facts.split_again += bar.split_again;
+        add(facts.in_voxels, bar.in_voxels);
+        add(facts.in_world, bar.in_world);
+    }
+    return facts;
+}
+
+}  // namespace isocore::climbing

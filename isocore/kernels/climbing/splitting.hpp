@@ -1,0 +1,115 @@
+// splitting.hpp - What happens to the few boxes that turn out to break the error bound: they are halved, their new
+// cuts become vertices among those there are, and only the bars around are drawn again.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "climbing/bars.hpp"
+#include "climbing/high_rice.hpp"
+#include "common/array.hpp"
+
+namespace isocore::climbing {
+
+struct LateBox {
+    Dims origin;
+    HighRice box;
+};
+
+// The eight corner signs of a box of the block at `origin`.
+inline unsigned corners_of(const SignGrid& signs, const Dims& origin, const HighRice& box) {
+    unsigned out = 0;
+    for (unsigned c = 0; c < 8; ++c) {
+        const auto at = [&](std::size_t a) { return origin[a] + (c >> a & 1 ? box.high[a] : box.low[a]); };
+        out |= static_cast<unsigned>(signs.at(at(0), at(1), at(2))) << c;
+    }
+    return out;
+}
+
+// Cuts a box that holds a disk down to boxes that do: its parts are as simple, but their corners need not show it.
+inline void halve(const SignGrid& signs, const Dims& origin, const HighRice& box, std::vector<HighRice>& out) {
+    std::size_t axis = 0;
+    for (std::size_t a = 1; a < 3; ++a) {
+        if (box.length(a) > box.length(axis)) axis = a;
+    }
+    HighRice below = box, above = box;
+    below.high[axis] = above.low[axis] = static_cast<std::uint8_t>((box.low[axis] + box.high[axis]) / 2);
+    for (const HighRice& half : {below, above}) {
+        const Content content = kContents[corners_of(signs, origin, half)];
+        if (content == Content::nothing) continue;
+        if (content == Content::disk || half.is_cell()) out.push_back(half);
+        else halve(signs, origin, half, out);
+    }
+}
+
+inline void split_bar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late) {
+    std::vector<HighRice> boxes;
+    auto broken = bar.broken.begin();
+    std::size_t block = 0;
+    bars.visit(number, [&](const Dims& origin, const HighRice* box, const HighRice* end) {
+        const std::size_t before = boxes.size();
+        for (; box != end; ++box) {
+            if (broken != bar.broken.end() && bar.boxes.data() + *broken == box) {
+                const std::size_t first = boxes.size();
+                halve(signs, origin, *box, boxes);
+                for (std::size_t n = first; n < boxes.size(); ++n) late.push_back({origin, boxes[n]});
+                ++broken;
+            } else {
+                boxes.push_back(*box);
+            }
+        }
+        bar.blocks[block++].boxes = static_cast<std::uint32_t>(boxes.size() - before);
+    });
+    bar.boxes = std::move(boxes);
+    bar.split_again += bar.broken.size();
+    bar.broken.clear();
+}
+
+// Halves the boxes that broke the bound, and returns their parts; their bars and those around are stale then.
+inline std::vector<LateBox> split_broken(const SignGrid& signs, Bars& bars) {
+    std::vector<LateBox> late;
+    for (std::size_t n = 0; n < bars.bars.size(); ++n) {
+        if (bars.bars[n].broken.empty()) continue;
+        split_bar(signs, bars, n, bars.bars[n], late);
+        const std::size_t y = n % bars.blocks[1], z = n / bars.blocks[1];
+        for (std::size_t near_z = z ? z - 1 : 0; near_z < std::min(z + 2, bars.blocks[2]); ++near_z) {
+            for (std::size_t near_y = y ? y - 1 : 0; near_y < std::min(y + 2, bars.blocks[1]); ++near_y) {
+                bars.bars[near_y + bars.blocks[1] * near_z].stale = true;
+            }
+        }
+    }
+    return late;
+}
+
+// The numbers that vertices had before a few were inserted among them, and have now.
+class Renumbering {
+  public:
+    // inserted: the new numbers of the inserted ones.
+    explicit Renumbering(std::vector<std::size_t> inserted) : first_moved_(std::move(inserted)) {
+        std::sort(first_moved_.begin(), first_moved_.end());
+        for (std::size_t n = 0; n < first_moved_.size(); ++n) first_moved_[n] -= n;
+    }
+    std::int32_t operator()(std::int32_t before) const {
+        const auto past = std::upper_bound(first_moved_.begin(), first_moved_.end(), static_cast<std::size_t>(before));
+        return before + static_cast<std::int32_t>(past - first_moved_.begin());
+    }
+
+  private:
+    std::vector<std::size_t> first_moved_;
+};
+
+// Moves the triangles of all bars to where `bars` wants them now; `before` tells where they were, never further up.
+inline void move_triangles(const std::vector<std::size_t>& before, const Bars& bars, Array<std::int32_t>& triangles) {
+    for (std::size_t n = bars.bars.size(); n-- > 0;) {
+        const Bar& bar = bars.bars[n];
+        const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * before[n]);
+        const auto size = static_cast<std::ptrdiff_t>(3 * bar.triangles);
+        if (before[n] != bar.first_triangle) {
+            std::copy_backward(from, from + size, triangles.begin() + static_cast<std::ptrdiff_t>(3 * bar.first_triangle) + size);
+        }
+    }
+}
+
+}  // namespace isocore::climbing

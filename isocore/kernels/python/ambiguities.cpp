@@ -1,0 +1,38 @@
+// ambiguities.cpp - ambiguities(samples, isovalue, below, threads), once per sample type.
+#include "ambiguities/ambiguities.hpp"
+
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+
+namespace isocore::python {
+namespace {
+
+template <class Sample>
+void bind(nb::module_& module) {
+    module.def(
+        "ambiguities",
+        [](VolumeArray<Sample> samples, double isovalue, bool below, int threads) {
+            ambiguities::Found found;
+            {
+                const nb::gil_scoped_release unlocked;
+                found = ambiguities::find(grid_view(samples), isovalue, below, threads);
+            }
+            return nb::make_tuple(to_numpy(std::move(found.places), 3), to_numpy(std::move(found.distances)));
+        },
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("threads") = 1);
+}
+
+}  // namespace
+
+void bind_ambiguities(nb::module_& module) {
+    bind<std::uint8_t>(module);
+    bind<std::int8_t>(module);
+    bind<std::uint16_t>(module);
+    bind<std::int16_t>(module);
+    bind<std::uint32_t>(module);
+    bind<std::int32_t>(module);
+    bind<float>(module);
+    bind<double>(module);
+}
+
+}  // namespace isocore::python

@@ -1,0 +1,57 @@
+"""`isocore bench VOLUME` and `convert --ambiguities`, as their users call them."""
+
+from __future__ import annotations
+
+import csv
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from click.testing import CliRunner
+from isocore.cli.bench import bench
+from isocore.cli.convert import convert
+from shapes import SAMPLES
+from small_files import ball, write_nifti
+
+KNOT = SAMPLES / "knot.nii.gz"
+
+
+def test_a_volume_gives_the_papers_table_and_plot(tmp_path: Path) -> None:
+    """Block sizes 1 to 32, several bounds, as text, CSV, Markdown and SVG."""
+    source = write_nifti(tmp_path / "ball.nii", ball())
+    files = {option: tmp_path / f"table.{option}" for option in ("csv", "markdown", "plot")}
+    arguments = [x for option, path in files.items() for x in (f"--{option}", str(path))]
+    result = CliRunner().invoke(bench, [str(source), "-i", "50", *arguments])
+    assert result.exit_code == 0, result.output
+    assert "block size" in result.stdout and "Isovalue 50" in result.stdout
+    rows = list(csv.DictReader(files["csv"].read_text().splitlines()))
+    assert [int(row["block size"]) for row in rows][:6] == [1, 2, 4, 8, 16, 32]
+    assert float(rows[0]["mc / asc"]) == 1
+    for row in rows:
+        assert row["max error"] == "none" or float(row["error max"]) <= float(row["max error"])
+    assert files["markdown"].read_text().count("\n|") == len(rows) + 2
+    drawn = ET.fromstring(files["plot"].read_text())
+    assert drawn.tag.endswith("svg") and len(drawn.findall("{*}polyline")) == 2
+
+
+def test_bench_refuses_an_isovalue_that_draws_nothing(tmp_path: Path) -> None:
+    """One line, exit code 1."""
+    source = write_nifti(tmp_path / "ball.nii", ball())
+    result = CliRunner().invoke(bench, [str(source), "-i", "1e6"])
+    assert result.exit_code == 1
+    assert "draws no surface" in result.stderr
+
+
+def test_ambiguous_places_are_written_beside_the_surface(tmp_path: Path) -> None:
+    """One input, one isovalue, one file of points."""
+    places = tmp_path / "places.ply"
+    arguments = [str(KNOT), "-i", "200", "-o", str(tmp_path / "knot.ply"), "--ambiguities", str(places)]
+    assert CliRunner().invoke(convert, arguments).exit_code == 0
+    assert places.read_bytes().startswith(b"ply\n") and b"saddle_distance" in places.read_bytes()
+
+
+def test_one_file_of_places_does_not_go_with_two_isovalues(tmp_path: Path) -> None:
+    """Refused before anything is read, exit code 2."""
+    arguments = [str(KNOT), "-i", "200", "-i", "100", "-d", str(tmp_path), "--ambiguities", "places.ply"]
+    result = CliRunner().invoke(convert, arguments)
+    assert result.exit_code == 2
+    assert "--ambiguities" in result.stderr
