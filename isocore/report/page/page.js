@@ -20,14 +20,14 @@ function make(tag, text = "", name = "") {
 
 const columns = [
   { title: "file", value: (run) => fileName(run.output === "-" ? run.source : run.output), show: String },
+  { title: "status", value: (run) => (run.missed.length ? run.status + ", missed" : run.status), show: String },
   { title: "isovalue", value: (run) => run.isovalue, show: plain, number: true },
   { title: "triangles", value: (run) => dig(run, "surface.triangles"), show: whole, number: true },
   { title: "reference", value: (run) => dig(run, "reference.triangles"), show: whole, number: true },
   { title: "ratio", value: (run) => dig(run, "ratio.triangles"), show: short(2), number: true },
   { title: "seconds", value: ownSeconds, show: short(3), number: true },
   { title: "ref. s", value: (run) => dig(run, "reference.seconds"), show: short(3), number: true },
-  { title: "watertight", value: (run) => dig(run, "surface.watertight"), show: (v) => (v == null ? "" : v ? "yes" : "no") },
-  { title: "status", value: (run) => (run.missed.length ? run.status + ", missed" : run.status), show: String },
+  { title: "closed", value: (run) => dig(run, "surface.watertight"), show: (v) => (v == null ? "" : v ? "yes" : "no") },
 ];
 
 function summarise() {
