@@ -41,14 +41,14 @@ def _nonfinite_warning(spread: Histogram) -> tuple[str, ...]:
     return (f"{spread.nonfinite:,} samples are not finite; they count as outside, so the surface ends beside them",)
 
 
-def surface_parts(found: Extraction, measured: Measurements, chosen: Chosen, spread: Histogram) -> dict[str, Any]:
-    """What the report says about one surface."""
+def surface_parts(found: Extraction, measured: Measurements, chosen: Chosen, known: dict[str, Any]) -> dict[str, Any]:
+    """What the report says about one surface. known: the parts of the field."""
     facts = {key: value for key, value in found.facts.items() if key not in _NAMED_FACTS}
     named = {key: found.facts.get(key) for key in _NAMED_FACTS}
     empty = not len(found.surface.triangles)
     message = ""
     if empty:
-        low, high = spread.range or (float("nan"), float("nan"))
+        low, high = known["range"] or (float("nan"), float("nan"))
         message = f"no surface at isovalue {chosen.isovalue:g}; the samples lie between {low:g} and {high:g}"
     return named | {
         "status": "empty" if empty else "done",
@@ -57,8 +57,15 @@ def surface_parts(found: Extraction, measured: Measurements, chosen: Chosen, spr
         "chosen": chosen.why,
         "surface": asdict(measured),
         "facts": facts,
-        "warnings": found.warnings,
+        "warnings": found.warnings + _border_warning(measured, known["kind"]),
     }
+
+
+def _border_warning(measured: Measurements, kind: str) -> tuple[str, ...]:
+    if kind != "volume" or not measured.boundary_edges:
+        return ()
+    edges = measured.boundary_edges
+    return (f"the surface is open where it meets the volume's border ({edges:,} edges); --cap closes it",)
 
 
 def options_part(options: Options, **others: Any) -> dict[str, Any]:

@@ -115,7 +115,7 @@ def convert(job: Job) -> Iterator[RunReport]:
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
-                parts = known | compose.surface_parts(found, measured, chosen, spread)
+                parts = known | compose.surface_parts(found, measured, chosen, known)
                 parts["warnings"] = known["warnings"] + parts["warnings"] + written.warnings
                 run = RunReport(
                     **(_asked(job, target) | parts),

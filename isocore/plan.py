@@ -82,7 +82,7 @@ def _detached(here: Path, files: list[str]) -> set[str]:
             except OSError:
                 continue
     tails = {line.split(":", 1)[1].strip() for line in lines if line.lower().startswith(("data file:", "datafile:"))}
-    return tails | set(lines)
+    return {os.path.normpath(name) for name in tails | set(lines)}
 
 
 def check_template(template: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -206,3 +207,46 @@ def test_help_is_quick_because_it_imports_little() -> None:
         "assert not {'numpy', 'rich', 'nibabel', 'isocore.readers'} & set(sys.modules)"
     )
     assert subprocess.run([sys.executable, "-P", "-c", code], timeout=60, check=False).returncode == 0
+
+
+def test_an_open_surface_is_warned_about_and_capped_on_request(tmp_path: Path) -> None:
+    """The warning names the option."""
+    source = write_nifti(tmp_path / "ball.nii", ball(6))
+    assert "--cap" in run(source, "-i", 50, "-o", tmp_path / "open.ply").stderr
+    result = run(source, "-i", 50, "-o", tmp_path / "closed.ply", "--cap", "--require", "watertight manifold")
+    assert result.exit_code == 0 and "--cap" not in result.stderr
+
+
+def test_the_data_of_a_header_is_no_input_of_its_own(tmp_path: Path) -> None:
+    """However the header spells its path."""
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "tooth.raw").write_bytes(ball().tobytes(order="F"))
+    header = ["NRRD0004", "type: float", "dimension: 3", "sizes: 12 12 12", "encoding: raw", "endian: little"]
+    (tmp_path / "in" / "tooth.nhdr").write_text("\n".join([*header, "data file: ./tooth.raw", ""]))
+    result = run(tmp_path / "in", "-d", tmp_path / "out", "-i", 50, "--report", tmp_path / "run.json")
+    assert result.exit_code == 0
+    assert len(json.loads((tmp_path / "run.json").read_text())["outputs"]) == 1
+
+
+def test_a_bar_appears_on_a_terminal_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And there only after a second, in colours only where they are wanted."""
+    import io
+
+    from isocore.cli import console
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    for stream, shown in ((io.StringIO(), False), (Terminal(), True)):
+        monkeypatch.setattr(sys, "stderr", stream)
+        monkeypatch.setattr(console, "_PATIENCE_SECONDS", 0.01)
+        monkeypatch.setenv("TERM", "xterm")
+        with console.Progress(2, wanted=True) as progress:
+            for _ in range(50):
+                time.sleep(0.01)
+                progress.at([])
+                if progress._bar is not None:
+                    break
+            progress.step()
+        assert (progress._bar is not None) is shown and bool(stream.getvalue()) is shown
