@@ -21,9 +21,7 @@ if TYPE_CHECKING:
 @click.option("--csv", type=PATH, metavar="FILE", help="Volumes: the table as CSV.")
 @click.option("--markdown", type=PATH, metavar="FILE", help="Volumes: the table as Markdown.")
 @click.option("--plot", type=PATH, metavar="FILE", help="Volumes: triangles and time by block size, SVG.")
-@click.option(
-    "--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes: how many."
-)
+@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes: how many.")
 @click.option("--threads", default=None, type=click.IntRange(1), help="Threads for drawing.")
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
