@@ -136,7 +136,7 @@ def propagate_grid(
     skeleton: _Int32,
     low: _Float64,
     high: _Float64,
-    visited: _Bytes,
+    place: _Int32,
     isovalue: float,
     below: bool = False,
     capped: bool = False,

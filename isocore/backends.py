@@ -88,7 +88,7 @@ def _prepare_thinning(field: Field, options: Options) -> Extract:
     if isinstance(field, CellMesh):
         return prepare_thinning(field, options)
     volume, walker = field, GridWalker(field, capped=options.cap)
-    advice = walker.advice(options)
+    advice = walker.advice()
 
     def extract(isovalue: float) -> Extraction:
         vertices, triangles, facts = walker.propagate(volume.stored_isovalue(isovalue), options.threads)

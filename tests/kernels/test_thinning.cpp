@@ -98,8 +98,8 @@ void walks_through_volumes_find_what_marching_cubes_finds() {
         const thinning::GridOptions options{trial % 2 == 1, trial % 3 == 1};
         const auto skeleton = thinning::thin_grid(grid, options);
         const std::size_t pad = options.capped ? 1 : 0;
-        std::vector<std::uint8_t> visited((dims[0] + 2 * pad - 1) * (dims[1] + 2 * pad - 1) * (dims[2] + 2 * pad - 1));
-        const thinning::GridSkeletonView view{skeleton.cells.data(), skeleton.low.data(), skeleton.high.data(), skeleton.cells.size(), visited.data()};
+        std::vector<std::int32_t> place((dims[0] + 2 * pad - 1) * (dims[1] + 2 * pad - 1) * (dims[2] + 2 * pad - 1));
+        const thinning::GridSkeletonView view{skeleton.cells.data(), skeleton.low.data(), skeleton.high.data(), skeleton.cells.size(), place.data()};
         for (const double isovalue : {0.0, 1.0, 2.5, 4.0, 7.0}) {
             const auto walked = thinning::propagate_grid(grid, view, isovalue, options, 1 + trial % 3);
             marching_cubes::Options asked;

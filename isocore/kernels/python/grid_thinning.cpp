@@ -24,9 +24,9 @@ nb::object thin(const VolumeArray<Sample>& samples, bool below, bool capped) {
 
 template <class Sample>
 nb::object propagate(const VolumeArray<Sample>& samples, const Vector<std::int32_t>& skeleton, const Vector<double>& low,
-                     const Vector<double>& high, const nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& visited,
+                     const Vector<double>& high, const nb::ndarray<std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>& place,
                      double isovalue, bool below, bool capped, int threads) {
-    const thinning::GridSkeletonView view{skeleton.data(), low.data(), high.data(), skeleton.shape(0), visited.data()};
+    const thinning::GridSkeletonView view{skeleton.data(), low.data(), high.data(), skeleton.shape(0), place.data()};
     thinning::GridMesh mesh;
     {
         const nb::gil_scoped_release unlocked;
@@ -40,7 +40,7 @@ template <class Sample>
 void bind(nb::module_& module) {
     module.def("thin_grid", &thin<Sample>, nb::arg("samples").noconvert(), nb::arg("below") = false, nb::arg("capped") = false);
     module.def("propagate_grid", &propagate<Sample>, nb::arg("samples").noconvert(), nb::arg("skeleton").noconvert(),
-               nb::arg("low").noconvert(), nb::arg("high").noconvert(), nb::arg("visited").noconvert(), nb::arg("isovalue"),
+               nb::arg("low").noconvert(), nb::arg("high").noconvert(), nb::arg("place").noconvert(), nb::arg("isovalue"),
                nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1);
 }
 

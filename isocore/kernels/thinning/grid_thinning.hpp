@@ -34,7 +34,7 @@ struct GridSkeletonView {
     const std::int32_t* cells;
     const double *low, *high;
     std::size_t size;
-    std::uint8_t* visited;  // one per cell, all 0 before and after
+    std::int32_t* place;  // one per cell, all 0 before and after: when it was visited
 };
 
 struct GridMesh {
