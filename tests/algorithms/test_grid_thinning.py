@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapes
+from mesh_oracles import triangle_set
 
 from isocore.backends import Options, prepare
 from isocore.volume import Volume
-from mesh_oracles import triangle_set
 
 
 def assert_same_as_marching_cubes(volume: Volume, isovalue: float, *, cap: bool = False) -> None:
