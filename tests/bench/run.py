@@ -59,7 +59,7 @@ def smooth_noise(n: int) -> np.ndarray:
     noise = np.fft.rfftn(np.random.default_rng(0).standard_normal((n, n, n)))
     x, y = np.fft.fftfreq(n)[:, None, None], np.fft.fftfreq(n)[None, :, None]
     z = np.fft.rfftfreq(n)[None, None, :]
-    smooth = np.fft.irfftn(noise * np.exp(-2 * (np.pi * 2) ** 2 * (x**2 + y**2 + z**2)), s=(n, n, n))
+    smooth = np.fft.irfftn(noise * np.exp(-2 * (np.pi * 2) ** 2 * (x**2 + y**2 + z**2)), s=(n, n, n), axes=(0, 1, 2))
     return np.asfortranarray(smooth.astype(np.float32))
 
 
