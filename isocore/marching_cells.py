@@ -22,13 +22,13 @@ _CAP = "--cap closes volumes only: a mesh's surface stays open where it meets th
 
 def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     """Scan all cells for every isovalue."""
-    warnings = mesh_warnings(options)
+    warnings, cell = mesh_warnings(options), mean_cell(mesh)
 
     def extract(isovalue: float) -> Extraction:
         vertices, triangles, intersected = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads
         )
-        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
+        surface = mesh_surface(mesh, cell, vertices, triangles, normals=options.normals)
         facts = {"search": {"cells": mesh.cells, "visited": mesh.cells, "intersected": intersected}}
         return Extraction(surface, facts, warnings)
 
@@ -40,23 +40,34 @@ def mesh_warnings(options: Options) -> tuple[str, ...]:
     return (_CAP,) if options.cap else ()
 
 
+def mean_cell(mesh: CellMesh) -> float:
+    """The edge of a cube as large as the mean cell, were the mesh's box full of them. Paid once per mesh."""
+    extents = np.subtract(*_box(mesh.points)[::-1])
+    return float(np.cbrt(np.prod(np.maximum(extents, extents.max() * 1e-6)) / mesh.cells))
+
+
 def mesh_surface(
-    mesh: CellMesh, vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32], *, normals: bool
+    mesh: CellMesh, cell: float, vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32], *, normals: bool
 ) -> Surface:
-    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface."""
-    rounded = vertices.astype(coordinate_type(mesh, vertices), copy=False)
+    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface.
+
+    cell: what `mean_cell` says of the mesh.
+    """
+    rounded = vertices.astype(_coordinate_type(cell, vertices), copy=False)
     directions = _kernels.triangle_normals(rounded, triangles) if normals else None
     return Surface(rounded, triangles, directions, unit=mesh.unit)
 
 
-def coordinate_type(mesh: CellMesh, vertices: npt.NDArray[np.float64]) -> type[np.float32] | type[np.float64]:
+def _coordinate_type(cell: float, vertices: npt.NDArray[np.float64]) -> type[np.float32] | type[np.float64]:
     """float32, or float64 where the steps of float32 are too coarse for the mean cell."""
     if not len(vertices):
         return np.float32
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    farthest = max(np.abs(low).max(), np.abs(high).max())
+    farthest = np.abs(_box(vertices)).max()
     if not farthest < np.finfo(np.float32).max:
         return np.float64
-    extents = np.ptp(mesh.points, axis=0)
-    cell = float(np.prod(np.maximum(extents, extents.max() * 1e-6)) / mesh.cells) ** (1 / 3)
     return np.float32 if np.spacing(np.float32(farthest)) <= _COARSEST_STEP * cell else np.float64
+
+
+def _box(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """(2, 3) lowest and highest corner; numpy takes ten times as long for it."""
+    return np.array(_kernels.bounds(places)).reshape(2, 3)

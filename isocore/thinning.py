@@ -18,7 +18,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.errors import IsocoreError
 from isocore.extraction import Extract, Extraction, Options
 from isocore.index_file import load_index
-from isocore.marching_cells import mesh_surface, mesh_warnings
+from isocore.marching_cells import mean_cell, mesh_surface, mesh_warnings
 from isocore.mesh_index import IndexPart, MeshIndex
 
 #: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
@@ -38,12 +38,12 @@ def prepare_thinning(mesh: CellMesh, options: Options) -> Extract:
     """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
     index, warnings = _index_of(mesh, options)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
-    walker = Walker(mesh, index)
+    walker, cell = Walker(mesh, index), mean_cell(mesh)
     known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
         vertices, triangles, seeds, visited = walker.propagate(isovalue, options.threads)
-        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
+        surface = mesh_surface(mesh, cell, vertices, triangles, normals=options.normals)
         search = {**known, "seeds": seeds, "visited": visited, "intersected": visited}
         return Extraction(surface, {"search": search}, warnings)
 

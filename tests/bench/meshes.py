@@ -1,0 +1,99 @@
+"""Time thinning against our own full scan and VTK's scalar tree, in one process: `python tests/bench/meshes.py`.
+
+Two million tetrahedra by default, a smooth field, twenty isovalues, merged points. All three take turns at every
+isovalue; the figures are medians over the isovalues.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from isocore.backends import Options, prepare
+from isocore.cell_mesh import CellMesh
+
+ORDERS = ((0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1))
+
+
+def smooth_mesh(bricks: int) -> CellMesh:
+    """bricks^3 cubes of six tetrahedra each, with a field of a few dozen extrema."""
+    n = bricks + 1
+    at = np.stack(np.meshgrid(*[np.arange(bricks)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    weight, unit = np.array([n * n, n, 1]), np.eye(3, dtype=np.int64)
+    low = at @ weight
+    tets = [
+        np.stack([low, low + unit[a] @ weight, low + (unit[a] + unit[b]) @ weight, low + weight.sum()], axis=1)
+        for a, b in ORDERS
+    ]
+    points = np.stack(np.meshgrid(*[np.linspace(0, 1, n)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    x, y, z = points.T
+    values = np.sin(9 * x + 2 * y) + np.cos(8 * y - z) + np.sin(7 * z + 3 * x * y)
+    return CellMesh(points, np.concatenate(tets).astype(np.int32), np.empty((0, 8), np.int32), values)
+
+
+def scalar_tree(mesh: CellMesh, threads: int) -> Callable[[float], int]:
+    """VTK's vtkContour3DLinearGrid (which merges points) with vtkSpanSpace, built before the first figure."""
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+    vtk.vtkSMPTools.SetBackend("STDThread" if threads > 1 else "Sequential")
+    vtk.vtkSMPTools.Initialize(threads)
+    points, cells, grid = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkUnstructuredGrid()
+    points.SetData(numpy_to_vtk(mesh.points, deep=True))
+    cells.SetData(4, numpy_to_vtkIdTypeArray(mesh.tets.astype(np.int64).ravel(), deep=True))
+    grid.SetPoints(points)
+    grid.SetCells(vtk.VTK_TETRA, cells)
+    values = numpy_to_vtk(mesh.values, deep=True)
+    values.SetName("values")
+    grid.GetPointData().SetScalars(values)
+    contour, tree = vtk.vtkContour3DLinearGrid(), vtk.vtkSpanSpace()
+    contour.SetInputData(grid)
+    contour.SetInterpolateAttributes(False)
+    contour.SetUseScalarTree(True)
+    contour.SetScalarTree(tree)
+
+    def run(isovalue: float) -> int:
+        contour.SetValue(0, isovalue)
+        contour.Update()
+        return int(contour.GetOutput().GetNumberOfPolys())
+
+    return run
+
+
+def ours(mesh: CellMesh, backend: str, threads: int) -> tuple[Callable[[float], int], float]:
+    """A backend's extraction, and the seconds its preparation took."""
+    start = time.perf_counter()
+    extract = prepare(mesh, backend, Options(threads=threads, isovalues=20))
+    return lambda isovalue: len(extract(isovalue).surface.triangles), time.perf_counter() - start
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--bricks", type=int, default=70)
+    mesh = smooth_mesh(parser.parse_args().bricks)
+    isovalues = np.linspace(mesh.values.min(), mesh.values.max(), 22)[1:-1].tolist()
+    print(f"{len(mesh.tets):,} tetrahedra, {len(isovalues)} isovalues")
+    for threads in (1, 2):
+        runs: dict[str, Any] = {"VTK span space": scalar_tree(mesh, threads)}
+        for backend in ("mc", "thinning"):
+            runs[backend], prepared = ours(mesh, backend, threads)
+            print(f"{threads} threads  prepare {backend:10} {prepared:8.2f} s")
+        seconds: dict[str, list[float]] = {name: [] for name in runs}
+        totals = {name: run(isovalues[0]) - run(isovalues[0]) for name, run in runs.items()}
+        for isovalue in isovalues:
+            for name, run in runs.items():
+                start = time.perf_counter()
+                totals[name] += run(isovalue)
+                seconds[name].append(time.perf_counter() - start)
+        for name, each in seconds.items():
+            print(f"{threads} threads  {name:18} {totals[name]:>10,} triangles {1e3 * statistics.median(each):8.2f} ms")
+
+
+if __name__ == "__main__":
+    main()
