@@ -43,7 +43,7 @@ kernels: $(READY)  ## the kernels' own tests, under sanitizers
 
 bench: $(READY)  ## time us against the peers, in one process
 	$(BIN)/python -m pip install -q ".[bench]" --no-build-isolation --no-deps && $(BIN)/python -m pip install -q vtk scikit-image nilearn
-	$(BIN)/python tests/bench/run.py
+	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py
 
 samples: $(READY)  ## make sample_volumes/ again
 	$(BIN)/python sample_volumes/make.py

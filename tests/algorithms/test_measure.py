@@ -75,6 +75,18 @@ def test_any_soup_of_triangles_is_counted_as_by_hand(soup, threads):
     assert {name: getattr(measured, name) for name in count_slowly(surface)} == count_slowly(surface)
 
 
+@settings(max_examples=100, deadline=None)
+@given(soups)
+def test_a_soup_with_distant_indices_is_counted_as_by_hand(soup):
+    """Neighbours whose indices differ by more than 16 bits hold take another path."""
+    n, triangles = soup
+    vertices = np.zeros((9 * 8000, 3), np.float32)
+    vertices[: n * 8000 : 8000] = np.random.default_rng(n).integers(0, 3, (n, 3))
+    surface = shapes_mesh.surface(vertices, [[8000 * v for v in t] for t in triangles])
+    measured = measure(surface)
+    assert {name: getattr(measured, name) for name in count_slowly(surface)} == count_slowly(surface)
+
+
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_a_damaged_torus_is_counted_as_by_hand(data):
@@ -159,6 +171,14 @@ def test_a_small_body_far_away_keeps_its_volume():
     sphere = shapes_mesh.sphere()
     far = Surface(sphere.vertices.astype(np.float64) + 1e7, sphere.triangles)
     assert measure(far).volume == pytest.approx(measure(sphere).volume, rel=1e-7)
+
+
+def test_the_box_holds_unused_vertices_and_skips_what_is_not_a_number():
+    """Every vertex counts, whatever its place in memory; NaN is nowhere."""
+    torus = shapes_mesh.torus(50, 20)
+    vertices = np.concatenate([torus.vertices, [[9, 0, 0], [0, -8, np.nan], [0, 0, 7]]]).astype(np.float32)
+    box = (tuple(np.nanmin(vertices, axis=0).tolist()), tuple(np.nanmax(vertices, axis=0).tolist()))
+    assert measure(Surface(vertices, torus.triangles)).bounds == box
 
 
 def test_an_empty_surface_measures_nothing():

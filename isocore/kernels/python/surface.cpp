@@ -6,6 +6,7 @@
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "surface/size.hpp"
 #include "surface/format.hpp"
 #include "surface/measure.hpp"
 #include "surface/normals.hpp"

@@ -1,13 +1,13 @@
 // components.hpp - Which vertices hang together.
-// Every vertex first points to one earlier neighbour, or to where that one points: no vertex writes to another, so
-// threads need not agree on anything. What those pointers miss is joined afterwards.
+// Every window of vertices is joined within itself, where threads need not agree on anything; what reaches from one
+// window into an earlier one is joined afterwards. A component's root is its earliest vertex.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
-#include <vector>
+
+#include "common/array.hpp"
 
 namespace isocore {
 
@@ -15,42 +15,41 @@ class Components {
 public:
     using Pair = std::pair<std::int32_t, std::int32_t>;
 
-    explicit Components(std::size_t count) : parent_(count) {
-        for (std::size_t v = 0; v < count; ++v) {
-            parent_[v].store(static_cast<std::int32_t>(v), std::memory_order_relaxed);
-        }
+    explicit Components(std::size_t count) : parent_(count) {}
+
+    // Everything below is for vertices that have been started.
+    void start(std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) parent_[v] = static_cast<std::int32_t>(v);
     }
 
-    // To be called at most once per vertex; several threads may.
-    void hang_below(std::int32_t vertex, std::int32_t earlier) {
-        at(vertex).store(at(earlier).load(std::memory_order_relaxed), std::memory_order_relaxed);
-    }
+    // For a vertex that nothing has joined yet: a join without a search.
+    void hang_below(std::int32_t vertex, std::int32_t earlier) { at(vertex) = at(earlier); }
 
-    // Not to be called while others still hang. Returns whether the two were apart.
+    // Returns whether the two were apart.
     bool join(Pair pair) {
         std::int32_t a = root_of(pair.first), b = root_of(pair.second);
         if (a == b) return false;
         if (a < b) std::swap(a, b);
-        at(a).store(b, std::memory_order_relaxed);
+        at(a) = b;
         return true;
     }
 
 private:
-    std::atomic<std::int32_t>& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
+    std::int32_t& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
 
     // Every step shortens the way for those who come later.
     std::int32_t root_of(std::int32_t v) {
-        std::int32_t parent = at(v).load(std::memory_order_relaxed);
+        std::int32_t parent = at(v);
         while (parent != v) {
-            const std::int32_t above = at(parent).load(std::memory_order_relaxed);
-            at(v).store(above, std::memory_order_relaxed);
+            const std::int32_t above = at(parent);
+            at(v) = above;
             v = parent;
             parent = above;
         }
         return v;
     }
 
-    std::vector<std::atomic<std::int32_t>> parent_;
+    Array<std::int32_t> parent_;
 };
 
 }  // namespace isocore

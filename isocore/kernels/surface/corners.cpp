@@ -6,57 +6,77 @@
 namespace isocore {
 namespace {
 
-constexpr std::size_t kSmallWindow = 16384;
+constexpr std::size_t kSmallWindow = 32768;
 
 }  // namespace
 
-void Corners::look_at(std::size_t begin, std::size_t end) {
+template <class Offset>
+void Corners<Offset>::look_at(std::size_t begin, std::size_t end) {
     begin_ = begin;
     counts_.assign(end - begin, 0);
     slots_.resize(end - begin);
     spilled_.clear();
-    // Local copies: a write into a slot could otherwise be one into a member.
-    const auto size = static_cast<std::uint32_t>(end - begin);
-    const auto first = static_cast<std::uint32_t>(begin);
-    std::uint32_t* counts = counts_.data();
-    Slots* slots = slots_.data();
-    const auto add = [=, this](std::int32_t vertex, std::int32_t from, std::int32_t to) {
-        const std::uint32_t index = static_cast<std::uint32_t>(vertex) - first;
-        if (index >= size) return;
-        const std::uint32_t slot = counts[index]++;
-        if (slot >= kSlots) return spill({index, {from, to}});
-        slots[index].from[slot] = from;
-        slots[index].to[slot] = to;
-    };
     const auto lowest = static_cast<std::int32_t>(begin), highest = static_cast<std::int32_t>(end - 1);
     for (std::size_t block = 0; block < blocks_.size(); ++block) {
-        if (blocks_[block].highest < lowest || blocks_[block].lowest > highest) continue;
+        const VertexRange range = blocks_[block];
+        if (range.highest < lowest || range.lowest > highest) continue;
         const std::int32_t* corners = triangles_ + 3 * block * kTrianglesPerBlock;
         const std::int32_t* last = triangles_ + 3 * std::min(triangle_count_, (block + 1) * kTrianglesPerBlock);
-        for (; corners != last; corners += 3) {
-            const std::int32_t a = corners[0], b = corners[1], c = corners[2];
-            if ((a == b) | (b == c) | (c == a)) continue;
-            add(a, b, c);
-            add(b, c, a);
-            add(c, a, b);
+        if (range.lowest >= lowest && range.highest <= highest) {
+            add_block<true>(corners, last);
+        } else {
+            add_block<false>(corners, last);
         }
     }
     std::stable_sort(spilled_.begin(), spilled_.end(), [](const Spilled& a, const Spilled& b) { return a.index < b.index; });
 }
 
-// Rare, and kept out of the loop above.
-void Corners::spill(const Spilled& corner) { spilled_.push_back(corner); }
+template <class Offset>
+template <bool kAllInside>
+void Corners<Offset>::add_block(const std::int32_t* corners, const std::int32_t* last) {
+    // Local copies: a write into a slot could otherwise be one into a member.
+    const auto size = static_cast<std::uint32_t>(counts_.size());
+    const auto first = static_cast<std::uint32_t>(begin_);
+    std::uint8_t* const counts = counts_.data();
+    Slots<Offset>* const slots = slots_.data();
+    const auto add = [=, this](std::int32_t vertex, std::int32_t from, std::int32_t to) {
+        const std::uint32_t index = static_cast<std::uint32_t>(vertex) - first;
+        if (!kAllInside && index >= size) return;
+        const LinkEdge<Offset> edge{static_cast<Offset>(from), static_cast<Offset>(to)};
+        const std::uint8_t slot = counts[index];
+        if (slot >= kSlots) return spill({index, edge});
+        counts[index] = static_cast<std::uint8_t>(slot + 1);
+        slots[index].edges[slot] = edge;
+    };
+    for (; corners != last; corners += 3) {
+        const std::int32_t a = corners[0], b = corners[1], c = corners[2];
+        if ((a == b) | (b == c) | (c == a)) continue;
+        add(a, b - a, c - a);
+        add(b, c - b, a - b);
+        add(c, a - c, b - c);
+    }
+}
 
-void Corners::copy_link(std::size_t vertex, std::vector<LinkEdge>& link) const {
+// Rare, and kept out of the loop above.
+template <class Offset>
+void Corners<Offset>::spill(const Spilled& corner) {
+    counts_[corner.index] = kSlots + 1;
+    spilled_.push_back(corner);
+}
+
+template <class Offset>
+void Corners<Offset>::copy_link(std::size_t vertex, Link& link) const {
     const std::size_t index = vertex - begin_;
     link.clear();
     for (std::size_t i = 0; i < std::min<std::size_t>(counts_[index], kSlots); ++i) {
-        link.push_back({slots_[index].from[i], slots_[index].to[i]});
+        link.push_back({slots_[index].edges[i].from, slots_[index].edges[i].to});
     }
     if (counts_[index] <= kSlots) return;
     auto spilled = std::lower_bound(spilled_.begin(), spilled_.end(), index,
                                     [](const Spilled& entry, std::size_t wanted) { return entry.index < wanted; });
-    for (; spilled != spilled_.end() && spilled->index == index; ++spilled) link.push_back(spilled->edge);
+    for (; spilled != spilled_.end() && spilled->index == index; ++spilled) {
+        link.push_back({spilled->edge.from, spilled->edge.to});
+    }
 }
 
 std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vertex_count, int threads) {
@@ -67,5 +87,8 @@ std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vert
     if (visits <= 4 * blocks.size()) return kSmallWindow;
     return vertex_count / static_cast<std::size_t>(std::clamp(threads, 1, 64)) + 1;
 }
+
+template class Corners<std::int16_t>;
+template class Corners<std::int32_t>;
 
 }  // namespace isocore

@@ -20,19 +20,27 @@ struct VertexRange {
     std::int32_t highest;
 };
 
-// Eight edges opposite to one vertex, each in the direction in which its triangle runs along it. Most vertices
-// have fewer; then the rest is left as it was.
-constexpr std::size_t kSlots = 8;
-struct alignas(64) Slots {
-    std::array<std::int32_t, kSlots> from;
-    std::array<std::int32_t, kSlots> to;
-};
-
+// An edge opposite to a vertex, in the direction in which its triangle runs along it. Its ends are given by how far
+// they are from the vertex: negative is earlier, and zero is neither. Wherever neighbours have neighbouring indices
+// that fits into 16 bits, which halves the memory to go through.
+template <class Offset>
 struct LinkEdge {
-    std::int32_t from;
-    std::int32_t to;
+    Offset from;
+    Offset to;
 };
 
+// Room for eight edges; most vertices have fewer, then the rest is left as it was.
+constexpr std::size_t kSlots = 8;
+template <class Offset>
+struct alignas(kSlots * sizeof(LinkEdge<Offset>)) Slots {
+    std::array<LinkEdge<Offset>, kSlots> edges;
+};
+
+using Link = std::vector<LinkEdge<std::int32_t>>;
+
+// Offset: std::int16_t where no block's range exceeds `kShortRange`, else std::int32_t.
+constexpr std::int32_t kShortRange = 32767;
+template <class Offset>
 class Corners {
 public:
     Corners(const std::int32_t* triangles, std::size_t triangle_count, const std::vector<VertexRange>& blocks)
@@ -41,26 +49,29 @@ public:
     // Collects the corners of vertices begin .. end - 1. Triangles with a repeated corner are left out.
     void look_at(std::size_t begin, std::size_t end);
 
+    // kSlots + 1 stands for any number that the slots cannot hold.
     std::size_t count(std::size_t vertex) const { return counts_[vertex - begin_]; }
     // The first eight link edges of a vertex, or all, in the order of their triangles.
-    const Slots& slots(std::size_t vertex) const { return slots_[vertex - begin_]; }
+    const Slots<Offset>& slots(std::size_t vertex) const { return slots_[vertex - begin_]; }
     // All link edges of a vertex, however many.
-    void copy_link(std::size_t vertex, std::vector<LinkEdge>& link) const;
+    void copy_link(std::size_t vertex, Link& link) const;
 
 private:
     struct Spilled {
         std::uint32_t index;
-        LinkEdge edge;
+        LinkEdge<Offset> edge;
     };
 
+    template <bool kAllInside>
+    void add_block(const std::int32_t* corners, const std::int32_t* last);
     void spill(const Spilled& corner);
 
     const std::int32_t* triangles_;
     std::size_t triangle_count_;
     const std::vector<VertexRange>& blocks_;
     std::size_t begin_ = 0;
-    Array<std::uint32_t> counts_;
-    std::vector<Slots> slots_;
+    Array<std::uint8_t> counts_;
+    std::vector<Slots<Offset>> slots_;
     std::vector<Spilled> spilled_;  // what the slots cannot hold, by vertex
 };
 

@@ -4,6 +4,24 @@
 #include <algorithm>
 
 namespace isocore {
+namespace {
+
+constexpr std::size_t kShortLink = 32;
+
+// Walks from the first edge to the one that starts where it ends, and so on: a single ring is back at the first edge
+// after as many steps as there are edges, and not before. Searching is quadratic, but quick in a short link.
+bool is_ring(const Link& link) {
+    if (link.size() < 2 || link.size() > kShortLink) return false;
+    std::size_t at = 0, steps = 0;
+    do {
+        const std::int32_t wanted = link[at].to;
+        for (at = 0; at < link.size() && link[at].from != wanted;) ++at;
+        ++steps;
+    } while (at != 0 && at != link.size() && steps < link.size());
+    return at == 0 && steps == link.size();
+}
+
+}  // namespace
 
 // Fills the neighbours in rising order. Returns whether none of their edges has more than two triangles.
 bool LinkInspector::count_edges(EdgeCounts& counts) {
@@ -31,9 +49,13 @@ std::size_t LinkInspector::root_of(std::int32_t neighbour) {
     return i;
 }
 
-bool LinkInspector::inspect(const std::vector<LinkEdge>& link, EdgeCounts& counts) {
+bool LinkInspector::inspect(const Link& link, EdgeCounts& counts) {
+    if (is_ring(link)) {
+        counts.edges += link.size();
+        return true;
+    }
     uses_.clear();
-    for (const LinkEdge& edge : link) {
+    for (const auto& edge : link) {
         uses_.push_back({edge.from, true});
         uses_.push_back({edge.to, false});
     }
@@ -44,7 +66,7 @@ bool LinkInspector::inspect(const std::vector<LinkEdge>& link, EdgeCounts& count
     std::size_t pieces = neighbours_.size();
     parents_.resize(pieces);
     for (std::size_t i = 0; i < pieces; ++i) parents_[i] = i;
-    for (const LinkEdge& edge : link) {
+    for (const auto& edge : link) {
         const std::size_t a = root_of(edge.from), b = root_of(edge.to);
         if (a == b) continue;
         parents_[a] = b;

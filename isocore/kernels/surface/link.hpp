@@ -21,7 +21,7 @@ struct EdgeCounts {
 class LinkInspector {
 public:
     // Adds the edges around any vertex to `counts`; returns whether the link is one ring or one fan.
-    bool inspect(const std::vector<LinkEdge>& link, EdgeCounts& counts);
+    bool inspect(const Link& link, EdgeCounts& counts);
 
 private:
     struct Use {

@@ -25,10 +25,6 @@ struct Measured {
     std::array<double, 6> bounds{};
 };
 
-// Lowest and highest x, y, z, NaN left out; zeros where there is nothing.
-template <class Real>
-std::array<double, 6> bounds(const Real* vertices, std::size_t count);
-
 // Throws std::invalid_argument if a triangle names a vertex that is not there.
 template <class Real>
 Measured measure(const MeshView<Real>& mesh, int threads);

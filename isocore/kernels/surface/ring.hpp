@@ -10,49 +10,9 @@
 
 #if defined(__AVX2__)
 #include <immintrin.h>
-#elif defined(__SSE2__) || defined(_M_X64)
-#include <emmintrin.h>
 #endif
 
 namespace isocore {
-
-// One bit per slot: whether it equals `value`, or is smaller.
-#if defined(__AVX2__)
-inline std::uint32_t bits_of(__m256i slots) {
-    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(slots)));
-}
-inline std::uint32_t equal(const std::int32_t* slots, std::int32_t value) {
-    return bits_of(_mm256_cmpeq_epi32(_mm256_load_si256(reinterpret_cast<const __m256i*>(slots)), _mm256_set1_epi32(value)));
-}
-inline std::uint32_t smaller(const std::int32_t* slots, std::int32_t value) {
-    return bits_of(_mm256_cmpgt_epi32(_mm256_set1_epi32(value), _mm256_load_si256(reinterpret_cast<const __m256i*>(slots))));
-}
-#elif defined(__SSE2__) || defined(_M_X64)
-inline std::uint32_t bits_of(__m128i low, __m128i high) {
-    const __m128i all = _mm_packs_epi16(_mm_packs_epi32(low, high), _mm_setzero_si128());
-    return static_cast<std::uint32_t>(_mm_movemask_epi8(all));
-}
-inline __m128i four(const std::int32_t* slots) { return _mm_load_si128(reinterpret_cast<const __m128i*>(slots)); }
-inline std::uint32_t equal(const std::int32_t* slots, std::int32_t value) {
-    const __m128i wanted = _mm_set1_epi32(value);
-    return bits_of(_mm_cmpeq_epi32(four(slots), wanted), _mm_cmpeq_epi32(four(slots + 4), wanted));
-}
-inline std::uint32_t smaller(const std::int32_t* slots, std::int32_t value) {
-    const __m128i limit = _mm_set1_epi32(value);
-    return bits_of(_mm_cmplt_epi32(four(slots), limit), _mm_cmplt_epi32(four(slots + 4), limit));
-}
-#else
-inline std::uint32_t equal(const std::int32_t* slots, std::int32_t value) {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < kSlots; ++i) bits |= static_cast<std::uint32_t>(slots[i] == value) << i;
-    return bits;
-}
-inline std::uint32_t smaller(const std::int32_t* slots, std::int32_t value) {
-    std::uint32_t bits = 0;
-    for (std::size_t i = 0; i < kSlots; ++i) bits |= static_cast<std::uint32_t>(slots[i] < value) << i;
-    return bits;
-}
-#endif
 
 // True if the link is one ring that all triangles run along in one direction: then every edge at the vertex has
 // exactly two triangles, in opposite directions. False also for links that the slots cannot hold.
@@ -62,14 +22,19 @@ inline std::uint32_t smaller(const std::int32_t* slots, std::int32_t value) {
 // and nothing else, only if the way is a ring: from an edge that starts where an earlier one starts nothing comes
 // back, because only the earlier one is ever next. The loops run over all slots, used or not, because that costs
 // less than a branch predicted wrongly.
-inline bool is_plain_ring(const Slots& link, std::size_t count) {
+template <class Offset>
+bool is_plain_ring(const Slots<Offset>& link, std::size_t count) {
     if (count < 2 || count > kSlots) return false;
     const std::uint32_t used = (1U << count) - 1;
     constexpr std::uint32_t kBits = 6;
     constexpr std::uint32_t kNone = 1U << kSlots;
     std::uint64_t after = std::uint64_t{kBits * kSlots} << (kBits * kSlots);
     for (std::size_t i = 0; i < kSlots; ++i) {
-        const std::uint32_t next = (equal(link.from.data(), link.to[i]) & used) | kNone;
+        std::uint32_t next = 0;
+        for (std::size_t j = 0; j < kSlots; ++j) {
+            next |= static_cast<std::uint32_t>(link.edges[j].from == link.edges[i].to) << j;
+        }
+        next = (next & used) | kNone;
         after |= static_cast<std::uint64_t>(kBits * static_cast<std::uint32_t>(std::countr_zero(next))) << (kBits * i);
     }
     std::uint64_t at = 0;
@@ -82,12 +47,90 @@ inline bool is_plain_ring(const Slots& link, std::size_t count) {
     return passed == (kEverySlot & ((std::uint64_t{1} << (kBits * count)) - 1));
 }
 
-// Link edges of a plain ring that lead from a vertex after `middle` to one before it, one bit each: where a run of
-// earlier neighbours begins. 1 if all neighbours are earlier, 0 if none is.
-inline std::uint32_t starts_of_earlier_runs(const Slots& ring, std::size_t count, std::int32_t middle) {
+// Link edges of a plain ring that lead from a later vertex to an earlier one, one bit each: where a run of earlier
+// neighbours begins. 1 if all neighbours are earlier, 0 if none is.
+template <class Offset>
+std::uint32_t starts_of_earlier_runs(const Slots<Offset>& ring, std::size_t count) {
+    std::uint32_t to_earlier = 0, from_earlier = 0;
+    for (std::size_t i = 0; i < kSlots; ++i) {
+        to_earlier |= static_cast<std::uint32_t>(ring.edges[i].to < 0) << i;
+        from_earlier |= static_cast<std::uint32_t>(ring.edges[i].from < 0) << i;
+    }
     const std::uint32_t used = (1U << count) - 1;
-    const std::uint32_t to_earlier = smaller(ring.to.data(), middle) & used;
-    return to_earlier == used ? 1 : to_earlier & ~smaller(ring.from.data(), middle);
+    to_earlier &= used;
+    return to_earlier == used ? 1 : to_earlier & ~from_earlier;
 }
+
+#if defined(__AVX2__)
+// The same for short offsets, in registers of eight. `next` holds for every edge the number of the one after it, as a
+// pair of bytes to shuffle by. The edges passed in one, two, four, eight steps then follow by shuffling what was
+// passed so far: an edge without a next one gives none. Where several begin at one vertex, all that lead there find
+// one and the same (wrong) number: the numbers found are then too few to pass every edge.
+struct LinkRegisters {
+    __m128i from;
+    __m128i to;
+
+    explicit LinkRegisters(const Slots<std::int16_t>& link) {
+        const __m256i pairs = _mm256_load_si256(reinterpret_cast<const __m256i*>(link.edges.data()));
+        const __m256i halves = _mm256_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15,  //
+                                                0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
+        const __m256i apart = _mm256_permute4x64_epi64(_mm256_shuffle_epi8(pairs, halves), 0b11'01'10'00);
+        from = _mm256_castsi256_si128(apart);
+        to = _mm256_extracti128_si256(apart, 1);
+    }
+};
+
+// How an edge names the one that is `step` slots further.
+template <int step>
+__m256i numbers_after() {
+    static constexpr auto bytes = [] {
+        std::array<std::uint8_t, 32> pairs{};
+        for (std::size_t lane = 0; lane < 16; ++lane) {
+            const std::size_t slot = (lane + step + (lane < 8 ? 0 : 4)) % kSlots;
+            pairs[2 * lane] = static_cast<std::uint8_t>(2 * slot);
+            pairs[2 * lane + 1] = static_cast<std::uint8_t>(2 * slot + 1);
+        }
+        return pairs;
+    }();
+    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes.data()));
+}
+
+inline bool is_plain_ring(const Slots<std::int16_t>& link, std::size_t count) {
+    if (count < 2 || count > kSlots) return false;
+    const LinkRegisters edges(link);
+    const __m128i lanes = _mm_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7);
+    const __m128i used = _mm_cmpgt_epi16(_mm_set1_epi16(static_cast<std::int16_t>(count)), lanes);
+    // Slots 0..7 and, above, 4..7, 0..3: a step of these is two steps of the link.
+    const __m256i from = _mm256_permute4x64_epi64(_mm256_castsi128_si256(_mm_and_si128(edges.from, used)), 0b00'01'01'00);
+    const __m256i to = _mm256_broadcastsi128_si256(edges.to);
+    const __m256i found0 = _mm256_cmpeq_epi16(to, from);
+    const __m256i found1 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 2));
+    const __m256i found2 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 4));
+    const __m256i found3 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 6));
+    const __m256i any = _mm256_or_si256(_mm256_or_si256(found0, found1), _mm256_or_si256(found2, found3));
+    const __m256i numbers = _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(found0, numbers_after<0>()),
+                                                            _mm256_and_si256(found1, numbers_after<1>())),
+                                            _mm256_or_si256(_mm256_and_si256(found2, numbers_after<2>()),
+                                                            _mm256_and_si256(found3, numbers_after<3>())));
+    const __m128i found = _mm_or_si128(_mm256_castsi256_si128(any), _mm256_extracti128_si256(any, 1));
+    const __m128i none = _mm_andnot_si128(found, _mm_set1_epi8(-1));
+    __m128i next = _mm_or_si128(_mm256_castsi256_si128(numbers), _mm256_extracti128_si256(numbers, 1));
+    next = _mm_or_si128(next, none);
+    __m128i passed = _mm_shuffle_epi8(_mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128), next);
+    for (int doubling = 0; doubling < 3; ++doubling) {
+        passed = _mm_or_si128(passed, _mm_shuffle_epi8(passed, next));
+        next = _mm_or_si128(_mm_shuffle_epi8(next, next), none);
+    }
+    return (_mm_cvtsi128_si32(passed) & 0xffff) == (1 << count) - 1;
+}
+
+inline std::uint32_t starts_of_earlier_runs(const Slots<std::int16_t>& ring, std::size_t count) {
+    const LinkRegisters edges(ring);
+    const auto earlier = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(edges.to, edges.from)));
+    const std::uint32_t used = (1U << count) - 1;
+    const std::uint32_t to_earlier = earlier & used;
+    return to_earlier == used ? 1 : to_earlier & ~(earlier >> kSlots);
+}
+#endif
 
 }  // namespace isocore
