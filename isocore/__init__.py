@@ -9,16 +9,14 @@ Names are imported when they are first used, so that `import isocore` costs noth
 
 from __future__ import annotations
 
-import sys
 from importlib import import_module
-from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from isocore.backends import BACKENDS, Backend, Extraction, Options, extract
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError, InputError, IsocoreError, OptionError, OutputError
-    from isocore.measure import Measurements, measure
+    from isocore.measurements import Measurements, measure
     from isocore.pipeline import Job, Target, convert
     from isocore.readers import ReadOptions, read
     from isocore.report import BatchReport, RunReport
@@ -58,7 +56,7 @@ _HOMES = {
     "backends": ("BACKENDS", "Backend", "Extraction", "Options", "extract"),
     "cell_mesh": ("CellMesh",),
     "errors": ("FieldError", "InputError", "IsocoreError", "OptionError", "OutputError"),
-    "measure": ("Measurements", "measure"),
+    "measurements": ("Measurements", "measure"),
     "pipeline": ("Job", "Target", "convert"),
     "readers": ("ReadOptions", "read"),
     "report": ("BatchReport", "RunReport"),
@@ -66,16 +64,6 @@ _HOMES = {
     "volume": ("Volume",),
     "writers": ("write",),
 }
-
-
-class _Package(ModuleType):
-    """The function `measure` keeps its name, although importing the submodule of that name would take it."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        super().__setattr__(name, value.measure if name == "measure" and isinstance(value, ModuleType) else value)
-
-
-sys.modules[__name__].__class__ = _Package
 
 
 def __getattr__(name: str) -> Any:

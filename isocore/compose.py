@@ -8,7 +8,7 @@ from typing import Any
 from isocore.backends import Extraction, Field, Options
 from isocore.histogram import Histogram
 from isocore.isovalue import Chosen
-from isocore.measure import Measurements
+from isocore.measurements import Measurements
 from isocore.report.record import RunReport
 from isocore.volume import Volume
 

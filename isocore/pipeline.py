@@ -18,7 +18,7 @@ from isocore.errors import FieldError, IsocoreError, OptionError, writing
 from isocore.histogram import histogram
 from isocore.index_file import index_path
 from isocore.isovalue import choose
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.readers import read
 from isocore.readers.options import ReadOptions

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface
 from isocore.volume import Volume
 

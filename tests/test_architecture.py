@@ -15,7 +15,7 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measure"}
+NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measurements"}
 KERNELS = {"_kernels", "_kernels_base", "_kernels_v3"}
 FIELD_ROOMS = {"histogram", "isovalue", "extrema", "cell_splitting"}
 JOB_ROOMS = {"pipeline", "compose", "plan", "batch", "worker", "workers", "cluster", "stamps", "dependencies"}
@@ -24,7 +24,7 @@ ABOVE_BACKENDS = JOB_ROOMS | {"describe", "depfile", "leftovers", "readers", "wr
 #: room -> rooms it may import. A room is the first part of a module's name below isocore.
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
-    **dict.fromkeys(("volume", "cell_mesh", "surface", "extraction", "measure"), NOUNS | KERNELS),
+    **dict.fromkeys(("volume", "cell_mesh", "surface", "extraction", "measurements"), NOUNS | KERNELS),
     "readers": NOUNS | KERNELS | {"cell_splitting"},
     "writers": {"surface", "errors", "whole_file"} | KERNELS,
     "whole_file": {"errors"},

@@ -9,7 +9,7 @@ import pytest
 import shapes_mesh
 
 from isocore import _kernels
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface, place_fresh
 
 

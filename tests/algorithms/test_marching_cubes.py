@@ -14,7 +14,7 @@ from shapes import integer_noise, volume_of
 
 from isocore import _kernels
 from isocore.backends import Options, prepare
-from isocore.measure import measure
+from isocore.measurements import measure
 
 Samples = npt.NDArray[np.int8]
 shapes = st.tuples(*[st.integers(2, 5)] * 3)

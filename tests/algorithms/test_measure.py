@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isocore import _kernels
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface
 
 

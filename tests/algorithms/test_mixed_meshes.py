@@ -9,7 +9,7 @@ from cell_shapes import HEX, PYRAMID, TET, WEDGE, block, of_kind
 from isocore.backends import BACKENDS, Options, prepare
 from isocore.cell_mesh import CellMesh
 from isocore.cell_splitting import split_cells
-from isocore.measure import measure
+from isocore.measurements import measure
 
 MESH_BACKENDS = [name for name, backend in BACKENDS.items() if CellMesh in backend.accepts]
 

@@ -15,7 +15,7 @@ from shapes import SHARED, volume_of
 
 from isocore.backends import Extraction, Options, prepare
 from isocore.errors import OptionError
-from isocore.measure import Measurements, measure
+from isocore.measurements import Measurements, measure
 
 Cell = npt.NDArray[np.float64]  # (2, 2, 2)
 TOPOLOGY = SHARED / "topology"

@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 
 import isocore
 from isocore import _kernels
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface
 from isocore.volume import Volume
 

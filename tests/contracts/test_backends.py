@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 from shapes import Shape, integer_noise, padded_shapes, sphere, volume_of
 
 from isocore.backends import BACKENDS, Options, prepare
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface
 from isocore.volume import Volume
 

@@ -20,7 +20,7 @@ from shapes import integer_noise
 import isocore
 from isocore import _kernels, _kernels_base
 from isocore.backends import BACKENDS, Options, prepare
-from isocore.measure import measure
+from isocore.measurements import measure
 from isocore.surface import Surface
 from isocore.volume import Volume
 from isocore.writers import FORMATS, write_to

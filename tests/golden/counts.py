@@ -10,7 +10,7 @@ from pathlib import Path
 
 import isocore
 from isocore.backends import BACKENDS, Options, prepare
-from isocore.measure import measure
+from isocore.measurements import measure
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parent.parent / "sample_volumes"
