@@ -15,22 +15,10 @@ from pathlib import Path
 import nibabel
 import numpy as np
 import numpy.typing as npt
+from knot import knot_field
 
 HERE = Path(__file__).parent
 Floats = npt.NDArray[np.float64]
-
-
-def knot(samples_per_axis: int) -> npt.NDArray[np.uint8]:
-    """The knot of Poston, Wong, Heng 1998, figure 1, on [-5, 5)^3; its surface is at 200."""
-    half = samples_per_axis / 2
-    a = (np.arange(samples_per_axis) - half) / half * 5
-    x, y, z = a[:, None, None], a[None, :, None], a[None, None, :]
-    m = 1 + x * x + y * y + z * z
-    p, q, w, s = 2 * x / m, 2 * y / m, 2 * z / m, (m - 2) / m
-    k1 = p**2 - q**2 + w**3 - 3 * w * s**2
-    k2 = 2 * p * q - 3 * w**2 * s + s**3
-    value = 255 * (np.sin(np.pi * (k1**2 + k2**2) ** (1 / 6)) + 1) / 2
-    return np.trunc(value).astype(np.uint8)
 
 
 def landscape(shape: tuple[int, int, int]) -> npt.NDArray[np.int16]:
@@ -162,7 +150,7 @@ def files() -> dict[str, bytes]:
     """Every sample's name and content."""
     affine = np.diag([2.0, 2.0, 2.0, 1.0])
     affine[:3, 3] = -64
-    knotted = nibabel.Nifti1Image(knot(64), affine)
+    knotted = nibabel.Nifti1Image(np.trunc(knot_field(64)).astype(np.uint8), affine)
     knotted.header.set_xyzt_units("mm")
     heights = landscape((90, 90, 40))
     nrrd = (b"NRRD0004\ntype: int16\ndimension: 3\nspace: right-anterior-superior\nsizes: 90 90 40\n"

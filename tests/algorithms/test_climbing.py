@@ -12,6 +12,7 @@ from climbing_promises import compare
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from knot import knot_field
 from shapes import SHARED
 
 from isocore import _kernels
@@ -24,12 +25,7 @@ few_values = arrays(np.uint8, st.tuples(*[st.integers(2, 9)] * 3), elements=st.i
 
 def knot(n: int, *, truncated: bool = True) -> npt.NDArray[np.generic]:
     """The knot of the paper's first figure."""
-    a = (np.arange(n) - n / 2) / (n / 2) * 5
-    x, y, z = a[:, None, None], a[None, :, None], a[None, None, :]
-    m = 1 + x * x + y * y + z * z
-    p, q, w, s = 2 * x / m, 2 * y / m, 2 * z / m, (m - 2) / m
-    k1, k2 = p**2 - q**2 + w**3 - 3 * w * s**2, 2 * p * q - 3 * w**2 * s + s**3
-    value = 255 * (np.sin(np.pi * (k1**2 + k2**2) ** (1 / 6)) + 1) / 2
+    value = knot_field(n)
     return np.asfortranarray(np.trunc(value).astype(np.uint8) if truncated else value.astype(np.float32))
 
 

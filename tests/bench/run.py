@@ -11,6 +11,7 @@ import json
 import platform
 import statistics
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -23,6 +24,9 @@ from isocore.backends import Options, prepare
 from isocore.volume import Volume
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "sample_volumes"))
+from knot import knot_field  # noqa: E402
+
 SHARED = ROOT.parent / "shared" / "data" / "volumes"
 Run = Callable[[], Any]
 
@@ -42,16 +46,6 @@ def volumes() -> Iterator[tuple[str, Volume, float]]:
     yield "knot uint8", Volume(np.asfortranarray(np.trunc(knot).astype(np.uint8))), 200.0
     yield "knot float32", Volume(np.asfortranarray(knot.astype(np.float32))), 200.0
     yield "smooth noise", Volume(smooth_noise(256)), 0.0
-
-
-def knot_field(n: int) -> np.ndarray:
-    """The knot of Poston, Wong, Heng 1998, before rounding."""
-    a = (np.arange(n) - n / 2) / (n / 2) * 5
-    x, y, z = a[:, None, None], a[None, :, None], a[None, None, :]
-    m = 1 + x * x + y * y + z * z
-    p, q, w, s = 2 * x / m, 2 * y / m, 2 * z / m, (m - 2) / m
-    k1, k2 = p**2 - q**2 + w**3 - 3 * w * s**2, 2 * p * q - 3 * w**2 * s + s**3
-    return 255 * (np.sin(np.pi * (k1**2 + k2**2) ** (1 / 6)) + 1) / 2
 
 
 def smooth_noise(n: int) -> np.ndarray:
