@@ -86,7 +86,7 @@ def build_index(
 ) -> tuple[_Part, _Part, _Int32, int]: ...
 
 # propagate: (vertices, triangles, seeds, visited cells); points and values as the index numbers them, `original` their
-# ids in the mesh; `visited` and `vertex_of_edge` are left as they were
+# ids in the mesh; `vertex_of_edge` is scratch, one per edge id
 def propagate(
     points: _Float64,
     values: _Real,
@@ -94,12 +94,10 @@ def propagate(
     tet_skeleton: _Int32,
     tet_low: _Float64,
     tet_high: _Float64,
-    tets_visited: _Bytes,
     hexes: _Int32,
     hex_skeleton: _Int32,
     hex_low: _Float64,
     hex_high: _Float64,
-    hexes_visited: _Bytes,
     original: _Int32,
     vertex_of_edge: _Int32,
     isovalue: float,
@@ -114,12 +112,10 @@ def walk(
     tet_skeleton: _Int32,
     tet_low: _Float64,
     tet_high: _Float64,
-    tets_visited: _Bytes,
     hexes: _Int32,
     hex_skeleton: _Int32,
     hex_low: _Float64,
     hex_high: _Float64,
-    hexes_visited: _Bytes,
     original: _Int32,
     vertex_of_edge: _Int32,
     isovalue: float,

@@ -21,7 +21,7 @@ from isocore.errors import InputError, reading
 from isocore.mesh_index import IndexPart, MeshIndex
 
 SUFFIX = ".isoindex"
-_MAGIC = b"isocore thinning index 1\n"
+_MAGIC = b"isocore thinning index 2\n"
 _LONGEST_HEADER = 1 << 16
 _ARRAYS = {"records": "<i4", "skeleton": "<i4", "low": "<f8", "high": "<f8"}
 

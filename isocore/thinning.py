@@ -89,14 +89,13 @@ def _oddities(index: MeshIndex) -> tuple[str, ...]:
 
 
 class Walker:
-    """A mesh and its index, ready to walk; one call at a time, since calls share the marks they leave and take back."""
+    """A mesh and its index, ready to walk; one call at a time, since calls number their vertices in the same place."""
 
     def __init__(self, mesh: CellMesh, index: MeshIndex) -> None:
-        visited = [np.zeros(len(part.records), np.uint8) for part in index.parts]
         self._arrays: list[Any] = [mesh.points[index.original], mesh.values[index.original]]
-        for part, marks in zip(index.parts, visited, strict=True):
-            self._arrays += [part.records, part.skeleton, part.low, part.high, marks]
-        self._arrays += [index.original, np.full(index.edges, -1, np.int32)]
+        for part in index.parts:
+            self._arrays += [part.records, part.skeleton, part.low, part.high]
+        self._arrays += [index.original, np.zeros(index.edges, np.int32)]
         self._one_at_a_time = Lock()
 
     def propagate(self, isovalue: float, threads: int = 1) -> Walked:

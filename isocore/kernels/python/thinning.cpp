@@ -42,22 +42,21 @@ nb::object build(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tet
 
 template <std::size_t columns>
 thinning::PartView view(const Records<columns>& records, const Vector<std::int32_t>& skeleton, const Vector<double>& low,
-                        const Vector<double>& high, const Scratch<std::uint8_t>& visited) {
-    return {records.data(), skeleton.data(), low.data(), high.data(), records.shape(0), skeleton.shape(0), visited.data()};
+                        const Vector<double>& high) {
+    return {records.data(), skeleton.data(), low.data(), high.data(), records.shape(0), skeleton.shape(0)};
 }
 
 // The arrays of an index, in the order in which Python hands them over.
 #define ISOCORE_INDEX_PARAMETERS                                                                                                           \
     const Rows<double, 3>&points, const Vector<Value>&values, const Records<kTetRecord>&tets, const Vector<std::int32_t>&tet_skeleton,     \
-        const Vector<double>&tet_low, const Vector<double>&tet_high, const Scratch<std::uint8_t>&tets_visited,                             \
-        const Records<kHexRecord>&hexes, const Vector<std::int32_t>&hex_skeleton, const Vector<double>&hex_low,                            \
-        const Vector<double>&hex_high, const Scratch<std::uint8_t>&hexes_visited, const Vector<std::int32_t>&original,                     \
-        const Scratch<std::int32_t>&vertex_of_edge
+        const Vector<double>&tet_low, const Vector<double>&tet_high, const Records<kHexRecord>&hexes,                                      \
+        const Vector<std::int32_t>&hex_skeleton, const Vector<double>&hex_low, const Vector<double>&hex_high,                              \
+        const Vector<std::int32_t>&original, const Scratch<std::int32_t>&vertex_of_edge
 #define ISOCORE_INDEX_VIEW                                                                                                                 \
     const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};                                                         \
     const thinning::IndexView index {                                                                                                      \
-        view<kTetRecord>(tets, tet_skeleton, tet_low, tet_high, tets_visited),                                                             \
-            view<kHexRecord>(hexes, hex_skeleton, hex_low, hex_high, hexes_visited), original.data(), vertex_of_edge.data()                \
+        view<kTetRecord>(tets, tet_skeleton, tet_low, tet_high), view<kHexRecord>(hexes, hex_skeleton, hex_low, hex_high),                 \
+            original.data(), vertex_of_edge.data()                                                                                         \
     }
 
 template <class Value>
@@ -86,8 +85,8 @@ template <class Value, class Function, class... Extra>
 void bind_search(nb::module_& module, const char* name, Function function, Extra... extra) {
     module.def(name, function, nb::arg("points").noconvert(), nb::arg("values").noconvert(), nb::arg("tets").noconvert(),
                nb::arg("tet_skeleton").noconvert(), nb::arg("tet_low").noconvert(), nb::arg("tet_high").noconvert(),
-               nb::arg("tets_visited").noconvert(), nb::arg("hexes").noconvert(), nb::arg("hex_skeleton").noconvert(),
-               nb::arg("hex_low").noconvert(), nb::arg("hex_high").noconvert(), nb::arg("hexes_visited").noconvert(),
+               nb::arg("hexes").noconvert(), nb::arg("hex_skeleton").noconvert(),
+               nb::arg("hex_low").noconvert(), nb::arg("hex_high").noconvert(),
                nb::arg("original").noconvert(), nb::arg("vertex_of_edge").noconvert(), nb::arg("isovalue"), extra...);
 }
 

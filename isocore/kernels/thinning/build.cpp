@@ -93,14 +93,19 @@ Gluing<Cell> glue_in_order(const Field<Value>& field, const int32_t* cells, size
 }
 
 template <class Cell>
-Part make_part(const Gluing<Cell>& gluing, const std::vector<double>& heights, const EdgeNumbers& numbers, size_t which) {
+Part make_part(const Gluing<Cell>& gluing, const std::vector<double>& heights, const EdgeNumbers& numbers, size_t which, std::vector<bool>& edge_seen) {
     Part part;
     part.records.resize(kRecord<Cell> * gluing.cells);
     int32_t* out = part.records.data();
     for (size_t cell = 0; cell < gluing.cells; ++cell) {
         out = std::copy_n(gluing.corners.data() + Cell::kCorners * cell, Cell::kCorners, out);
         out = std::copy_n(gluing.twins.data() + Cell::kFaces * cell, Cell::kFaces, out);
-        for (size_t n = 0; n < Cell::kEdges; ++n) *out++ = numbers(which, gluing.edges[Cell::kEdges * cell + n]);
+        for (size_t n = 0; n < Cell::kEdges; ++n) {
+            const int32_t edge = numbers(which, gluing.edges[Cell::kEdges * cell + n]);
+            auto seen = edge_seen[static_cast<size_t>(edge)];
+            *out++ = seen ? edge : ~edge;
+            seen = true;
+        }
     }
     const Skeleton skeleton = thin(gluing, heights.data());
     std::vector<std::pair<double, int32_t>> by_low(skeleton.cells.size());
@@ -142,8 +147,9 @@ Index build(const Field<Value>& field, const Cells& cells) {
     numbers.count(hexes);
     numbers.merge();
     Index index;
-    index.tets = make_part(tets, heights, numbers, 0);
-    index.hexes = make_part(hexes, heights, numbers, 1);
+    std::vector<bool> edge_seen(numbers.count());
+    index.tets = make_part(tets, heights, numbers, 0, edge_seen);
+    index.hexes = make_part(hexes, heights, numbers, 1, edge_seen);
     index.points = std::move(points.points);
     index.edge_count = numbers.count();
     return index;

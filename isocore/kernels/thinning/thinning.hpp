@@ -2,7 +2,7 @@
 //
 // build: once per field. tets and hexes as in marching_cells.hpp. Linear in the number of cells.
 // propagate: once per isovalue. Visits the cells the isosurface meets and no others, and returns the vertices and the
-// triangles a full scan would, in the order of the walk: the same bytes for any number of threads.
+// triangles a full scan would, in the order of the index's cells: the same bytes for any number of threads.
 #pragma once
 
 #include <array>
@@ -16,7 +16,8 @@
 namespace isocore::thinning {
 
 // A cell of the index: kCorners points, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges between
-// the same two points. Cells and points are renumbered so that neighbours lie close together.
+// the same two points, and bitwise negated (so below 0) in the first cell that names the edge: its owner, which numbers its
+// vertex. Cells and points are renumbered so that neighbours lie close together.
 template <class Cell>
 inline constexpr std::size_t kRecord = Cell::kCorners + Cell::kFaces + Cell::kEdges;
 
@@ -48,13 +49,12 @@ struct PartView {
     const std::int32_t *records, *skeleton;
     const double *low, *high;
     std::size_t cells, skeleton_size;
-    std::uint8_t* visited;  // one per cell, all 0 before and after
 };
 
 struct IndexView {
     PartView tets, hexes;
     const std::int32_t* points;
-    std::int32_t* vertex_of_edge;  // one per edge, all -1 before and after
+    std::int32_t* vertex_of_edge;  // one per edge, of no meaning between two calls
 };
 
 struct Mesh {
@@ -68,7 +68,7 @@ struct Mesh {
 template <class Value>
 Mesh propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
 
-// The search alone: the cells propagate would draw, in the order of the walk.
+// The search alone: the cells propagate would draw, ascending.
 struct Visited {
     Array<std::int32_t> tets, hexes;
     std::size_t seeds = 0;
