@@ -32,7 +32,7 @@ struct Inside {
         }
     }
 
-    bool operator()(Sample sample) const { return !nothing && sample >= lowest && sample <= highest; }
+    bool operator()(Sample sample) const { return !nothing & (sample >= lowest) & (sample <= highest); }
 
   private:
     // The nearest sample value at or above (up) or at or below the isovalue.

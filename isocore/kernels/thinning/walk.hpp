@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cstddef>
@@ -131,12 +132,22 @@ class Walk {
         const auto& triangles = drawn(corners, mask);
         drawn_by_block[static_cast<std::size_t>(cell) / kBlock] +=
             {1, static_cast<std::size_t>(std::popcount(owned(corners, mask))), triangles.middles, triangles.triangles};
-        for (mesh::Mask left = mesh::kCrossedFaces<Cell>[mask]; left != 0; left &= left - 1) {
-            const std::int32_t twin = twins[std::countr_zero(left)];
-            if (twin < 0) continue;
-            const std::int32_t next = twin / static_cast<std::int32_t>(Cell::kFaces);
-            if (mark(next, alone)) found.push_back(next);
+        // Which neighbours are new cannot be foreseen: one branch for all of them.
+        std::array<std::int32_t, Cell::kFaces> next;
+        mesh::Mask fresh = 0;
+        for (std::size_t n = 0; n < Cell::kFaces; ++n) {
+            const bool crossed = (mesh::kCrossedFaces<Cell>[mask] >> n & 1) & (twins[n] >= 0);
+            next[n] = crossed ? twins[n] / static_cast<std::int32_t>(Cell::kFaces) : cell;
+            fresh |= mesh::Mask{!visited(next[n])} << n;
         }
+        for (; fresh != 0; fresh &= fresh - 1) {
+            const std::int32_t neighbour = next[static_cast<std::size_t>(std::countr_zero(fresh))];
+            if (mark(neighbour, alone)) found.push_back(neighbour);
+        }
+    }
+
+    bool visited(std::int32_t cell) const {
+        return visited_[static_cast<std::size_t>(cell) / kWord].load(std::memory_order_relaxed) >> static_cast<std::size_t>(cell) % kWord & 1;
     }
 
     // Was the cell not visited before?
