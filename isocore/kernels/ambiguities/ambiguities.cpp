@@ -11,6 +11,7 @@
 
 #include "common/cube.hpp"
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::ambiguities {
@@ -74,14 +75,7 @@ Found find(GridView<Sample> samples, double isovalue, bool below, int threads) {
 }
 
 #define ISOCORE_INSTANTIATE(Sample) template Found find<Sample>(GridView<Sample>, double, bool, int);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore::ambiguities

@@ -6,6 +6,7 @@
 
 #include "common/crossing.hpp"
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 
 #if defined(__AVX2__)
 #include <immintrin.h>
@@ -96,14 +97,7 @@ SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool pa
 
 #define ISOCORE_INSTANTIATE(Sample) \
     template SignGrid classify<Sample>(GridView<Sample>, double, bool, bool, int);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore

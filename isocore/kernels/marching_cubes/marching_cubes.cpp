@@ -10,6 +10,7 @@
 
 #include "common/edge_vertices.hpp"
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 #include "common/signs.hpp"
 #include "marching_cubes/counting.hpp"
 #include "marching_cubes/drawing.hpp"
@@ -115,14 +116,7 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
 #define ISOCORE_INSTANTIATE(Sample)                                            \
     template Mesh<float> march<Sample, float>(GridView<Sample>, const Options&); \
     template Mesh<double> march<Sample, double>(GridView<Sample>, const Options&);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore::marching_cubes

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 
@@ -47,14 +48,7 @@ void bind(nb::module_& module) {
 }  // namespace
 
 void bind_grid_thinning(nb::module_& module) {
-    bind<std::uint8_t>(module);
-    bind<std::int8_t>(module);
-    bind<std::uint16_t>(module);
-    bind<std::int16_t>(module);
-    bind<std::uint32_t>(module);
-    bind<std::int32_t>(module);
-    bind<float>(module);
-    bind<double>(module);
+    for_each_sample_type([&]<class Sample>() { bind<Sample>(module); });
 }
 
 }  // namespace isocore::python

@@ -1,6 +1,7 @@
 // statistics.cpp - extent and histogram for numpy: samples as a flat view, in whatever order they lie in memory.
 #include "statistics/statistics.hpp"
 
+#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 
@@ -36,14 +37,7 @@ void bind_type(nb::module_& module) {
 }  // namespace
 
 void bind_statistics(nb::module_& module) {
-    bind_type<std::uint8_t>(module);
-    bind_type<std::int8_t>(module);
-    bind_type<std::uint16_t>(module);
-    bind_type<std::int16_t>(module);
-    bind_type<std::uint32_t>(module);
-    bind_type<std::int32_t>(module);
-    bind_type<float>(module);
-    bind_type<double>(module);
+    for_each_sample_type([&]<class Sample>() { bind_type<Sample>(module); });
 }
 
 }  // namespace isocore::python

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <string>
 
+#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
-#include "surface/size.hpp"
 #include "surface/format.hpp"
 #include "surface/measure.hpp"
 #include "surface/normals.hpp"
 #include "surface/place.hpp"
+#include "surface/size.hpp"
 
 namespace isocore::python {
 namespace {
@@ -141,14 +142,7 @@ void bind_surface(nb::module_& module) {
     using nb::arg;
     bind_real<float>(module);
     bind_real<double>(module);
-    bind_sample<std::uint8_t>(module);
-    bind_sample<std::int8_t>(module);
-    bind_sample<std::uint16_t>(module);
-    bind_sample<std::int16_t>(module);
-    bind_sample<std::uint32_t>(module);
-    bind_sample<std::int32_t>(module);
-    bind_sample<float>(module);
-    bind_sample<double>(module);
+    for_each_sample_type([&]<class Sample>() { bind_sample<Sample>(module); });
     module.def(
         "flip",
         [](const OwnRows<std::int32_t>& triangles, int threads) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 
 namespace isocore {
 namespace {
@@ -149,14 +150,7 @@ Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double 
 #define ISOCORE_STATISTICS(Sample)                                \
     template Extent extent(const Sample*, std::size_t, int);      \
     template Array<std::uint64_t> histogram(const Sample*, std::size_t, double, double, std::size_t, int);
-ISOCORE_STATISTICS(std::uint8_t)
-ISOCORE_STATISTICS(std::int8_t)
-ISOCORE_STATISTICS(std::uint16_t)
-ISOCORE_STATISTICS(std::int16_t)
-ISOCORE_STATISTICS(std::uint32_t)
-ISOCORE_STATISTICS(std::int32_t)
-ISOCORE_STATISTICS(float)
-ISOCORE_STATISTICS(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_STATISTICS)
 #undef ISOCORE_STATISTICS
 
 }  // namespace isocore

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 
 namespace isocore {
 namespace {
@@ -149,14 +150,7 @@ Array<float> triangle_normals(const MeshView<Real>& mesh) {
 #define ISOCORE_INSTANTIATE(Sample)                                                                               \
     template Array<float> gradient_normals(GridView<const Sample>, const MeshView<float>&, bool, int);            \
     template Array<float> gradient_normals(GridView<const Sample>, const MeshView<double>&, bool, int);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 template Array<float> triangle_normals(const MeshView<float>&);
