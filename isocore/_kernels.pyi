@@ -63,10 +63,16 @@ def format_faces(triangles: _Int32, with_normals: bool, threads: int = 1) -> byt
 def stl_records(vertices: _Real, triangles: _Int32, threads: int = 1) -> _Bytes: ...
 def ply_faces(triangles: _Int32, threads: int = 1) -> _Bytes: ...
 
-# marching_cells: (vertices in the mesh's space, triangles, intersected cells)
+# marching_cells: (vertices in the mesh's space, triangles, intersected cells); `single` makes vertices float32
 def marching_cells(
-    points: _Float64, tets: _Int32, hexes: _Int32, values: _Real, isovalue: float, threads: int = 1
-) -> tuple[_Float64, _Int32, int]: ...
+    points: _Float64,
+    tets: _Int32,
+    hexes: _Int32,
+    values: _Real,
+    isovalue: float,
+    threads: int = 1,
+    single: bool = False,
+) -> tuple[_Real, _Int32, int]: ...
 
 # statistics: samples as a flat view in memory order; (minimum, maximum, non-finite) with minimum > maximum where no
 # sample is finite, and counts in equal bins from low to high
@@ -102,7 +108,8 @@ def propagate(
     vertex_of_edge: _Int32,
     isovalue: float,
     threads: int = 1,
-) -> tuple[_Float64, _Int32, int, int]: ...
+    single: bool = False,
+) -> tuple[_Real, _Int32, int, int]: ...
 
 # walk: the search of propagate alone: (tetrahedra, hexahedra, seeds)
 def walk(

@@ -5,6 +5,8 @@ Doi, Koide 1991; Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -22,13 +24,13 @@ _CAP = "--cap closes volumes only: a mesh's surface stays open where it meets th
 
 def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     """Scan all cells for every isovalue."""
-    warnings, cell = mesh_warnings(options), mean_cell(mesh)
+    warnings, single = mesh_warnings(options), single_precision(mesh)
 
     def extract(isovalue: float) -> Extraction:
         vertices, triangles, intersected = _kernels.marching_cells(
-            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads
+            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single
         )
-        surface = mesh_surface(mesh, cell, vertices, triangles, normals=options.normals)
+        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
         facts = {"search": {"cells": mesh.cells, "visited": mesh.cells, "intersected": intersected}}
         return Extraction(surface, facts, warnings)
 
@@ -40,34 +42,22 @@ def mesh_warnings(options: Options) -> tuple[str, ...]:
     return (_CAP,) if options.cap else ()
 
 
-def mean_cell(mesh: CellMesh) -> float:
-    """The edge of a cube as large as the mean cell, were the mesh's box full of them. Paid once per mesh."""
-    extents = np.subtract(*_box(mesh.points)[::-1])
-    return float(np.cbrt(np.prod(np.maximum(extents, extents.max() * 1e-6)) / mesh.cells))
+def single_precision(mesh: CellMesh) -> bool:
+    """Are the steps of float32 fine enough for the mesh's mean cell, wherever a surface lies? Paid once per mesh.
+
+    The mean cell is the cube as large as the cells would be on average, were the mesh's box full of them.
+    """
+    box = np.array(_kernels.bounds(mesh.points)).reshape(2, 3)  # numpy takes ten times as long for it
+    extents, farthest = box[1] - box[0], np.abs(box).max()
+    if not farthest < np.finfo(np.float32).max:
+        return False
+    cell = np.cbrt(np.prod(np.maximum(extents, extents.max() * 1e-6)) / mesh.cells)
+    return bool(np.spacing(np.float32(farthest)) <= _COARSEST_STEP * cell)
 
 
 def mesh_surface(
-    mesh: CellMesh, cell: float, vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32], *, normals: bool
+    mesh: CellMesh, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], *, normals: bool
 ) -> Surface:
-    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface.
-
-    cell: what `mean_cell` says of the mesh.
-    """
-    rounded = vertices.astype(_coordinate_type(cell, vertices), copy=False)
-    directions = _kernels.triangle_normals(rounded, triangles) if normals else None
-    return Surface(rounded, triangles, directions, unit=mesh.unit)
-
-
-def _coordinate_type(cell: float, vertices: npt.NDArray[np.float64]) -> type[np.float32] | type[np.float64]:
-    """float32, or float64 where the steps of float32 are too coarse for the mean cell."""
-    if not len(vertices):
-        return np.float32
-    farthest = np.abs(_box(vertices)).max()
-    if not farthest < np.finfo(np.float32).max:
-        return np.float64
-    return np.float32 if np.spacing(np.float32(farthest)) <= _COARSEST_STEP * cell else np.float64
-
-
-def _box(places: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """(2, 3) lowest and highest corner; numpy takes ten times as long for it."""
-    return np.array(_kernels.bounds(places)).reshape(2, 3)
+    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface."""
+    directions = _kernels.triangle_normals(vertices, triangles) if normals else None
+    return Surface(vertices, triangles, directions, unit=mesh.unit)

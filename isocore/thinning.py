@@ -18,11 +18,11 @@ from isocore.cell_mesh import CellMesh
 from isocore.errors import IsocoreError
 from isocore.extraction import Extract, Extraction, Options
 from isocore.index_file import load_index
-from isocore.marching_cells import mean_cell, mesh_surface, mesh_warnings
+from isocore.marching_cells import mesh_surface, mesh_warnings, single_precision
 from isocore.mesh_index import IndexPart, MeshIndex
 
 #: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
-Walked: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], int, int]
+Walked: TypeAlias = tuple[npt.NDArray[Any], npt.NDArray[np.int32], int, int]
 
 # Past this share of the vertices, extrema are noise: the skeleton grows with them, and the walk saves little.
 _NOISE = 0.05
@@ -38,12 +38,12 @@ def prepare_thinning(mesh: CellMesh, options: Options) -> Extract:
     """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
     index, warnings = _index_of(mesh, options)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
-    walker, cell = Walker(mesh, index), mean_cell(mesh)
+    walker, single = Walker(mesh, index), single_precision(mesh)
     known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
-        vertices, triangles, seeds, visited = walker.propagate(isovalue, options.threads)
-        surface = mesh_surface(mesh, cell, vertices, triangles, normals=options.normals)
+        vertices, triangles, seeds, visited = walker.propagate(isovalue, options.threads, single=single)
+        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
         search = {**known, "seeds": seeds, "visited": visited, "intersected": visited}
         return Extraction(surface, {"search": search}, warnings)
 
@@ -98,11 +98,11 @@ class Walker:
         self._arrays += [index.original, np.zeros(index.edges, np.int32)]
         self._one_at_a_time = Lock()
 
-    def propagate(self, isovalue: float, threads: int = 1) -> Walked:
-        """The isosurface, as a full scan finds it."""
+    def propagate(self, isovalue: float, threads: int = 1, *, single: bool = False) -> Walked:
+        """The isosurface, as a full scan finds it; vertices in float32 (single) or float64."""
         kernel: Any = _kernels.propagate
         with self._one_at_a_time:
-            return cast(Walked, kernel(*self._arrays, isovalue, threads))
+            return cast(Walked, kernel(*self._arrays, isovalue, threads, single))
 
     def walk(self, isovalue: float) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], int]:
         """The search alone: tetrahedra and hexahedra visited, in the index's numbers, and seeds."""

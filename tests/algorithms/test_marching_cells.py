@@ -8,6 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from isocore import _kernels
+from isocore.backends import Options, prepare
 from isocore.cell_mesh import CellMesh
 
 KINDS = pytest.mark.parametrize("hexes", [False, True], ids=["tets", "hexes"])
@@ -113,3 +114,26 @@ def test_a_field_without_the_isovalue_gives_an_empty_surface() -> None:
         vertices, triangles = march(mesh, isovalue)
         assert vertices.shape == (0, 3)
         assert triangles.shape == (0, 3)
+
+
+@pytest.mark.parametrize("backend", ["mc", "thinning"])
+@pytest.mark.parametrize(("away", "dtype"), [(0.0, np.float32), (1e6, np.float64)])
+def test_coordinates_keep_a_cell_apart(backend: str, away: float, dtype: type) -> None:
+    """float32 near the origin; float64 where the steps of float32 come near the size of a cell."""
+    mesh = meshes.mesh_of(np.ones((3, 3, 3), bool))
+    far = CellMesh(mesh.points + np.array([away, 0, 0]), mesh.tets, mesh.hexes, mesh.points.sum(axis=1))
+    vertices = prepare(far, backend, Options())(4.3).surface.vertices
+    assert vertices.dtype == dtype
+    assert np.allclose(vertices.sum(axis=1) - away, 4.3, atol=1e-6, rtol=0)
+
+
+@KINDS
+def test_single_precision_only_rounds(hexes: bool) -> None:
+    """The same triangles, and vertices that differ by rounding."""
+    mesh = meshes.mesh_of(np.ones((3, 4, 3), bool), hexes=hexes)
+    mesh = meshes.with_values(mesh, np.random.default_rng(3).random(len(mesh.points)))
+    exact = _kernels.marching_cells(mesh.points, mesh.tets, mesh.hexes, mesh.values, 0.5)
+    single = _kernels.marching_cells(mesh.points, mesh.tets, mesh.hexes, mesh.values, 0.5, single=True)
+    assert single[0].dtype == np.float32
+    assert np.array_equal(exact[1], single[1])
+    assert np.allclose(exact[0], single[0], atol=1e-6, rtol=0)

@@ -76,8 +76,8 @@ void walks_find_what_a_full_scan_finds() {
         };
         const thinning::IndexView at{view(index.tets, tets), view(index.hexes, hexes), index.points.data(), vertex_of_edge.data()};
         for (const double isovalue : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.5, 4.0, 9.0}) {
-            const auto walked = thinning::propagate(mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);
-            const auto scanned = marching_cells::march(field, {box.tets.data(), box.hexes.data(), tets, hexes}, isovalue, 1);
+            const auto walked = thinning::propagate<double>(mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);
+            const auto scanned = marching_cells::march<double>(field, {box.tets.data(), box.hexes.data(), tets, hexes}, isovalue, 1);
             CHECK(walked.visited == scanned.intersected);
             CHECK(walked.triangles.size() == scanned.triangles.size());
             CHECK(walked.vertices.size() == scanned.vertices.size());

@@ -95,18 +95,18 @@ const HexCase& drawn(Hex, Mask signs, const Values& values, double isovalue) {
 }
 
 // Writes the vertices in the middle of a cell's loops: the mean of a loop's vertices, which position(edge) tells.
-template <class AnyCase, class Position>
-void write_middles(const AnyCase& drawn, const Position& position, double* out) {
+template <class AnyCase, class Position, class Coordinate>
+void write_middles(const AnyCase& drawn, const Position& position, Coordinate* out) {
     for (std::size_t middle = 0; middle < drawn.middles; ++middle, out += 3) {
         std::array<double, 3> sum{};
         int corners = 0;
         for (std::size_t n = 0; n < 3u * drawn.triangles; n += 3) {
             if (drawn.edges[n + 2] != kMiddle + middle) continue;
-            const double* corner = position(drawn.edges[n]);
-            for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += corner[axis];
+            const Coordinate* corner = position(drawn.edges[n]);
+            for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += static_cast<double>(corner[axis]);
             ++corners;
         }
-        for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = sum[axis] / corners;
+        for (std::size_t axis = 0; axis < 3; ++axis) out[axis] = static_cast<Coordinate>(sum[axis] / corners);
     }
 }
 

@@ -28,10 +28,11 @@ struct Field {
     }
 
     // Writes where the isosurface crosses the edge from point a to point b, which has the higher id in the mesh.
-    void cross(std::int32_t a, std::int32_t b, double isovalue, double* out) const {
+    template <class Coordinate>
+    void cross(std::int32_t a, std::int32_t b, double isovalue, Coordinate* out) const {
         const double t = crossing(value(a), value(b), isovalue);
         const double *from = point(a), *to = point(b);
-        for (int axis = 0; axis < 3; ++axis) out[axis] = from[axis] + t * (to[axis] - from[axis]);
+        for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<Coordinate>(from[axis] + t * (to[axis] - from[axis]));
     }
 };
 

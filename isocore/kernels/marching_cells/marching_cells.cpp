@@ -97,9 +97,10 @@ Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size
 }
 
 // Turns the chunks' triangles into those of the mesh: the second half of the work, chunk by chunk.
+template <class Coordinate>
 class Joiner {
   public:
-    Joiner(std::vector<Drawn>& drawn, const Merged& merged, Mesh& mesh) : drawn_(drawn), merged_(merged), mesh_(mesh), places_(drawn.size()) {
+    Joiner(std::vector<Drawn>& drawn, const Merged& merged, Mesh<Coordinate>& mesh) : drawn_(drawn), merged_(merged), mesh_(mesh), places_(drawn.size()) {
         std::size_t edge = 0, triangle = 0, middle = merged.edges.size();
         for (std::size_t n = 0; n < drawn.size(); ++n) {
             places_[n] = {edge, triangle, middle};
@@ -127,11 +128,11 @@ class Joiner {
             // The first corner of each triangle around the middle is one corner of the loop.
             std::array<double, 3> sum{};
             for (std::uint32_t triangle = from.middles[n][0]; triangle < from.middles[n][1]; ++triangle) {
-                const double* corner = mesh_.vertices.data() + 3 * static_cast<std::size_t>(out[3 * triangle]);
-                for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += corner[axis];
+                const Coordinate* corner = mesh_.vertices.data() + 3 * static_cast<std::size_t>(out[3 * triangle]);
+                for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += static_cast<double>(corner[axis]);
             }
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                mesh_.vertices[3 * (place.middle + n) + axis] = sum[axis] / (from.middles[n][1] - from.middles[n][0]);
+                mesh_.vertices[3 * (place.middle + n) + axis] = static_cast<Coordinate>(sum[axis] / (from.middles[n][1] - from.middles[n][0]));
             }
         }
     }
@@ -142,7 +143,7 @@ class Joiner {
     };
     std::vector<Drawn>& drawn_;
     const Merged& merged_;
-    Mesh& mesh_;
+    Mesh<Coordinate>& mesh_;
     std::vector<Places> places_;
 };
 
@@ -160,8 +161,8 @@ void drop_collapsed(Array<std::int32_t>& triangles) {
 
 }  // namespace
 
-template <class Value>
-Mesh march(const Field<Value>& field, const Cells& cells, double isovalue, int threads) {
+template <class Coordinate, class Value>
+Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double isovalue, int threads) {
     const Array<std::uint8_t> signs = classify(field, isovalue, threads);
     const std::size_t tet_chunks = (cells.tet_count + kChunk - 1) / kChunk, hex_chunks = (cells.hex_count + kChunk - 1) / kChunk;
     std::vector<Drawn> drawn(tet_chunks + hex_chunks);
@@ -177,7 +178,7 @@ Mesh march(const Field<Value>& field, const Cells& cells, double isovalue, int t
     const Merged merged = merge_edges(seen, field.size, threads);
     for (std::size_t n = 0; n < drawn.size(); ++n) drawn[n].edges = std::move(seen[n]);
 
-    Mesh mesh;
+    Mesh<Coordinate> mesh;
     Joiner joiner(drawn, merged, mesh);
     const std::size_t vertices = merged.edges.size();
     parallel_for(threads, vertices / kChunk + 1, [&](std::size_t chunk) {
@@ -190,7 +191,9 @@ Mesh march(const Field<Value>& field, const Cells& cells, double isovalue, int t
     return mesh;
 }
 
-template Mesh march<float>(const Field<float>&, const Cells&, double, int);
-template Mesh march<double>(const Field<double>&, const Cells&, double, int);
+template Mesh<float> march<float>(const Field<float>&, const Cells&, double, int);
+template Mesh<float> march<float>(const Field<double>&, const Cells&, double, int);
+template Mesh<double> march<double>(const Field<float>&, const Cells&, double, int);
+template Mesh<double> march<double>(const Field<double>&, const Cells&, double, int);
 
 }  // namespace isocore::marching_cells

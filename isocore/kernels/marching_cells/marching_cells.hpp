@@ -19,14 +19,15 @@ struct Cells {
     std::size_t tet_count, hex_count;
 };
 
+template <class Coordinate>
 struct Mesh {
-    Array<double> vertices;         // x, y, z, x, y, z ...
+    Array<Coordinate> vertices;     // x, y, z, x, y, z ...
     Array<std::int32_t> triangles;  // three vertices each
     std::size_t intersected = 0;    // cells that the isosurface meets
 };
 
 // Instantiated for float and double.
-template <class Value>
-Mesh march(const mesh::Field<Value>& field, const Cells& cells, double isovalue, int threads);
+template <class Coordinate, class Value>
+Mesh<Coordinate> march(const mesh::Field<Value>& field, const Cells& cells, double isovalue, int threads);
 
 }  // namespace isocore::marching_cells

@@ -1,4 +1,4 @@
-// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads), for float32 and float64 values.
+// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads, single), for float32 and float64 values.
 #include "marching_cells/marching_cells.hpp"
 
 #include "python/arrays.hpp"
@@ -7,23 +7,28 @@
 namespace isocore::python {
 namespace {
 
-template <class Value>
-nb::object march(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
-                 const Vector<Value>& values, double isovalue, int threads) {
-    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
-    const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
-    marching_cells::Mesh mesh;
+template <class Coordinate, class Value>
+nb::object march_to(const mesh::Field<Value>& field, const marching_cells::Cells& cells, double isovalue, int threads) {
+    marching_cells::Mesh<Coordinate> mesh;
     {
         const nb::gil_scoped_release unlocked;
-        mesh = marching_cells::march(field, cells, isovalue, threads);
+        mesh = marching_cells::march<Coordinate>(field, cells, isovalue, threads);
     }
     return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.intersected);
 }
 
 template <class Value>
+nb::object march(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
+                 const Vector<Value>& values, double isovalue, int threads, bool single) {
+    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
+    const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
+    return single ? march_to<float>(field, cells, isovalue, threads) : march_to<double>(field, cells, isovalue, threads);
+}
+
+template <class Value>
 void bind(nb::module_& module) {
     module.def("marching_cells", &march<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
-               nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1);
+               nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1, nb::arg("single") = false);
 }
 
 }  // namespace

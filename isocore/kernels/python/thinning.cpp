@@ -1,4 +1,4 @@
-// thinning.cpp - build_index(points, tets, hexes, values) and propagate(points, values, index arrays..., isovalue, threads).
+// thinning.cpp - build_index(points, tets, hexes, values) and propagate(points, values, index arrays..., isovalue, threads, single).
 #include "thinning/thinning.hpp"
 
 #include <cstdint>
@@ -59,15 +59,20 @@ thinning::PartView view(const Records<columns>& records, const Vector<std::int32
             original.data(), vertex_of_edge.data()                                                                                         \
     }
 
-template <class Value>
-nb::object propagate(ISOCORE_INDEX_PARAMETERS, double isovalue, int threads) {
-    ISOCORE_INDEX_VIEW;
-    thinning::Mesh mesh;
+template <class Coordinate, class Value>
+nb::object propagate_to(const mesh::Field<Value>& field, const thinning::IndexView& index, double isovalue, int threads) {
+    thinning::Mesh<Coordinate> mesh;
     {
         const nb::gil_scoped_release unlocked;
-        mesh = thinning::propagate(field, index, isovalue, threads);
+        mesh = thinning::propagate<Coordinate>(field, index, isovalue, threads);
     }
     return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.seeds, mesh.visited);
+}
+
+template <class Value>
+nb::object propagate(ISOCORE_INDEX_PARAMETERS, double isovalue, int threads, bool single) {
+    ISOCORE_INDEX_VIEW;
+    return single ? propagate_to<float>(field, index, isovalue, threads) : propagate_to<double>(field, index, isovalue, threads);
 }
 
 template <class Value>
@@ -94,7 +99,7 @@ template <class Value>
 void bind(nb::module_& module) {
     module.def("build_index", &build<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
                nb::arg("values").noconvert());
-    bind_search<Value>(module, "propagate", &propagate<Value>, nb::arg("threads") = 1);
+    bind_search<Value>(module, "propagate", &propagate<Value>, nb::arg("threads") = 1, nb::arg("single") = false);
     bind_search<Value>(module, "walk", &walk<Value>);
 }
 

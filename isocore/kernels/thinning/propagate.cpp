@@ -53,7 +53,8 @@ class Drawing {
     }
 
     // Numbers the vertices that the cells of a block own, and places them.
-    void place_vertices(size_t task, Mesh& mesh) {
+    template <class Coordinate>
+    void place_vertices(size_t task, Mesh<Coordinate>& mesh) {
         collect(task);
         size_t vertex = tasks_[task].before.vertices;
         const auto expect = [&](size_t, const int32_t* corners) {
@@ -76,7 +77,8 @@ class Drawing {
     }
 
     // first_middle: the number of the first vertex in the middle of a loop. Returns whether a triangle has two equal corners.
-    bool draw(size_t task, size_t first_middle, Mesh& mesh) const {
+    template <class Coordinate>
+    bool draw(size_t task, size_t first_middle, Mesh<Coordinate>& mesh) const {
         int32_t* out = mesh.triangles.data() + 3 * tasks_[task].before.triangles;
         size_t middle = first_middle + tasks_[task].before.middles;
         bool collapsed = false;
@@ -149,8 +151,8 @@ void drop_collapsed(Array<int32_t>& triangles) {
 
 }  // namespace
 
-template <class Value>
-Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalue, int threads) {
+template <class Coordinate, class Value>
+Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, double isovalue, int threads) {
     Walk<Tet, Value> tets(field, index.tets, isovalue);
     Walk<Hex, Value> hexes(field, index.hexes, isovalue);
     tets.run(threads);
@@ -161,7 +163,7 @@ Mesh propagate(const Field<Value>& field, const IndexView& index, double isovalu
     if (all.vertices + all.middles > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
         throw std::length_error("the surface has more vertices than 2^31 - 1; choose another isovalue");
     }
-    Mesh mesh;
+    Mesh<Coordinate> mesh;
     mesh.vertices.resize(3 * (all.vertices + all.middles));
     mesh.triangles.resize(3 * all.triangles);
     const size_t tasks = drawn_tets.tasks();
@@ -197,7 +199,9 @@ Visited walk(const Field<Value>& field, const IndexView& index, double isovalue)
 
 template Visited walk<float>(const Field<float>&, const IndexView&, double);
 template Visited walk<double>(const Field<double>&, const IndexView&, double);
-template Mesh propagate<float>(const Field<float>&, const IndexView&, double, int);
-template Mesh propagate<double>(const Field<double>&, const IndexView&, double, int);
+template Mesh<float> propagate<float>(const Field<float>&, const IndexView&, double, int);
+template Mesh<float> propagate<float>(const Field<double>&, const IndexView&, double, int);
+template Mesh<double> propagate<double>(const Field<float>&, const IndexView&, double, int);
+template Mesh<double> propagate<double>(const Field<double>&, const IndexView&, double, int);
 
 }  // namespace isocore::thinning

@@ -57,16 +57,17 @@ struct IndexView {
     std::int32_t* vertex_of_edge;  // one per edge, of no meaning between two calls
 };
 
+template <class Coordinate>
 struct Mesh {
-    Array<double> vertices;         // x, y, z, x, y, z ...
+    Array<Coordinate> vertices;     // x, y, z, x, y, z ...
     Array<std::int32_t> triangles;  // three vertices each
     std::size_t seeds = 0;          // skeleton cells the isosurface meets
     std::size_t visited = 0;        // cells walked, all of which it meets
 };
 
 // field: of the points as the index numbers them.
-template <class Value>
-Mesh propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
+template <class Coordinate, class Value>
+Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
 
 // The search alone: the cells propagate would draw, ascending.
 struct Visited {
