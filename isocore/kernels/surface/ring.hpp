@@ -10,9 +10,55 @@
 
 #if defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__) || defined(_M_X64)
+#include <emmintrin.h>
 #endif
 
 namespace isocore {
+
+// One bit for each edge that starts at `place`, also for slots not in use.
+template <class Offset>
+std::uint32_t starting_at(const Slots<Offset>& link, Offset place) {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kSlots; ++i) bits |= static_cast<std::uint32_t>(link.edges[i].from == place) << i;
+    return bits;
+}
+
+// One bit for each edge that leads to an earlier vertex, and above, for each that comes from one.
+template <class Offset>
+std::uint32_t earlier_ends(const Slots<Offset>& link) {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 0; i < kSlots; ++i) {
+        bits |= static_cast<std::uint32_t>(link.edges[i].to < 0) << i;
+        bits |= static_cast<std::uint32_t>(link.edges[i].from < 0) << (i + kSlots);
+    }
+    return bits;
+}
+
+#if defined(__SSE2__) || defined(_M_X64)
+// A link of short offsets in registers of eight.
+struct LinkRegisters {
+    __m128i from;
+    __m128i to;
+
+    explicit LinkRegisters(const Slots<std::int16_t>& link) {
+        const auto* pairs = reinterpret_cast<const __m128i*>(link.edges.data());
+        const __m128i low = _mm_load_si128(pairs), high = _mm_load_si128(pairs + 1);
+        from = _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(low, 16), 16), _mm_srai_epi32(_mm_slli_epi32(high, 16), 16));
+        to = _mm_packs_epi32(_mm_srai_epi32(low, 16), _mm_srai_epi32(high, 16));
+    }
+};
+
+inline std::uint32_t starting_at(const Slots<std::int16_t>& link, std::int16_t place) {
+    const __m128i found = _mm_cmpeq_epi16(LinkRegisters(link).from, _mm_set1_epi16(place));
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(found, _mm_setzero_si128())));
+}
+
+inline std::uint32_t earlier_ends(const Slots<std::int16_t>& link) {
+    const LinkRegisters edges(link);
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(edges.to, edges.from)));
+}
+#endif
 
 // True if the link is one ring that all triangles run along in one direction: then every edge at the vertex has
 // exactly two triangles, in opposite directions. False also for links that the slots cannot hold.
@@ -30,11 +76,7 @@ bool is_plain_ring(const Slots<Offset>& link, std::size_t count) {
     constexpr std::uint32_t kNone = 1U << kSlots;
     std::uint64_t after = std::uint64_t{kBits * kSlots} << (kBits * kSlots);
     for (std::size_t i = 0; i < kSlots; ++i) {
-        std::uint32_t next = 0;
-        for (std::size_t j = 0; j < kSlots; ++j) {
-            next |= static_cast<std::uint32_t>(link.edges[j].from == link.edges[i].to) << j;
-        }
-        next = (next & used) | kNone;
+        const std::uint32_t next = (starting_at(link, link.edges[i].to) & used) | kNone;
         after |= static_cast<std::uint64_t>(kBits * static_cast<std::uint32_t>(std::countr_zero(next))) << (kBits * i);
     }
     std::uint64_t at = 0;
@@ -51,35 +93,13 @@ bool is_plain_ring(const Slots<Offset>& link, std::size_t count) {
 // neighbours begins. 1 if all neighbours are earlier, 0 if none is.
 template <class Offset>
 std::uint32_t starts_of_earlier_runs(const Slots<Offset>& ring, std::size_t count) {
-    std::uint32_t to_earlier = 0, from_earlier = 0;
-    for (std::size_t i = 0; i < kSlots; ++i) {
-        to_earlier |= static_cast<std::uint32_t>(ring.edges[i].to < 0) << i;
-        from_earlier |= static_cast<std::uint32_t>(ring.edges[i].from < 0) << i;
-    }
     const std::uint32_t used = (1U << count) - 1;
-    to_earlier &= used;
-    return to_earlier == used ? 1 : to_earlier & ~from_earlier;
+    const std::uint32_t earlier = earlier_ends(ring);
+    const std::uint32_t to_earlier = earlier & used;
+    return to_earlier == used ? 1 : to_earlier & ~(earlier >> kSlots);
 }
 
 #if defined(__AVX2__)
-// The same for short offsets, in registers of eight. `next` holds for every edge the number of the one after it, as a
-// pair of bytes to shuffle by. The edges passed in one, two, four, eight steps then follow by shuffling what was
-// passed so far: an edge without a next one gives none. Where several begin at one vertex, all that lead there find
-// one and the same (wrong) number: the numbers found are then too few to pass every edge.
-struct LinkRegisters {
-    __m128i from;
-    __m128i to;
-
-    explicit LinkRegisters(const Slots<std::int16_t>& link) {
-        const __m256i pairs = _mm256_load_si256(reinterpret_cast<const __m256i*>(link.edges.data()));
-        const __m256i halves = _mm256_setr_epi8(0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15,  //
-                                                0, 1, 4, 5, 8, 9, 12, 13, 2, 3, 6, 7, 10, 11, 14, 15);
-        const __m256i apart = _mm256_permute4x64_epi64(_mm256_shuffle_epi8(pairs, halves), 0b11'01'10'00);
-        from = _mm256_castsi256_si128(apart);
-        to = _mm256_extracti128_si256(apart, 1);
-    }
-};
-
 // How an edge names the one that is `step` slots further.
 template <int step>
 __m256i numbers_after() {
@@ -95,6 +115,10 @@ __m256i numbers_after() {
     return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(bytes.data()));
 }
 
+// The same ring for short offsets, all slots at once. `next` holds for every edge the number of the one after it, as a
+// pair of bytes to shuffle by. The edges passed in one, two, four, eight steps then follow by shuffling what was
+// passed so far: an edge without a next one gives none. Where several begin at one vertex, all that lead there find
+// one and the same (wrong) number: the numbers found are then too few to pass every edge.
 inline bool is_plain_ring(const Slots<std::int16_t>& link, std::size_t count) {
     if (count < 2 || count > kSlots) return false;
     const LinkRegisters edges(link);
@@ -122,14 +146,6 @@ inline bool is_plain_ring(const Slots<std::int16_t>& link, std::size_t count) {
         next = _mm_or_si128(_mm_shuffle_epi8(next, next), none);
     }
     return (_mm_cvtsi128_si32(passed) & 0xffff) == (1 << count) - 1;
-}
-
-inline std::uint32_t starts_of_earlier_runs(const Slots<std::int16_t>& ring, std::size_t count) {
-    const LinkRegisters edges(ring);
-    const auto earlier = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(edges.to, edges.from)));
-    const std::uint32_t used = (1U << count) - 1;
-    const std::uint32_t to_earlier = earlier & used;
-    return to_earlier == used ? 1 : to_earlier & ~(earlier >> kSlots);
 }
 #endif
 
