@@ -118,13 +118,13 @@ __m256i numbers_after() {
 // The same ring for short offsets, all slots at once. `next` holds for every edge the number of the one after it, as a
 // pair of bytes to shuffle by. The edges passed in one, two, four, eight steps then follow by shuffling what was
 // passed so far: an edge without a next one gives none. Where several begin at one vertex, all that lead there find
-// one and the same (wrong) number: the numbers found are then too few to pass every edge.
+// one and the same number, made of theirs: then there are fewer numbers than edges, and some edge is never passed.
 inline bool is_plain_ring(const Slots<std::int16_t>& link, std::size_t count) {
     if (count < 2 || count > kSlots) return false;
     const LinkRegisters edges(link);
     const __m128i lanes = _mm_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7);
     const __m128i used = _mm_cmpgt_epi16(_mm_set1_epi16(static_cast<std::int16_t>(count)), lanes);
-    // Slots 0..7 and, above, 4..7, 0..3: a step of these is two steps of the link.
+    // Slots 0..7 and, above them, 4..7, 0..3: turned by none to three they pair every slot with every other.
     const __m256i from = _mm256_permute4x64_epi64(_mm256_castsi128_si256(_mm_and_si128(edges.from, used)), 0b00'01'01'00);
     const __m256i to = _mm256_broadcastsi128_si256(edges.to);
     const __m256i found0 = _mm256_cmpeq_epi16(to, from);
