@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import meshes
 import numpy as np
+import numpy.typing as npt
 import pytest
 from mesh_oracles import Glued, triangle_set
 
@@ -98,6 +99,40 @@ def test_voids_are_opened(body: str) -> None:
     vertices, edges, faces = (len(kind) for kind in glued.touched(kept))
     euler = vertices - edges + faces - len(kept)
     assert euler == meshes.BODIES[body][1] - meshes.BODIES[body][2]
+
+
+# Slices along the first axis; the void is the box in the middle of the second. Found by random search, then shrunk.
+_CAGE = (
+    "..#..  .####  ..#..  ..#..",
+    "####.  .#.#.  .###.  .....",
+    "..#..  ####.  ..#..  .....",
+    "..#..  .#...  .....  .....",
+)
+
+
+def test_a_void_is_opened_where_no_cell_may_be_pricked() -> None:
+    """Every point is an extremum, so no cell that reaches both sides may go: a path of others leads out."""
+    rows = [line.split() for line in _CAGE]
+    boxes = np.array([[[box == "#" for box in row[x]] for row in rows] for x in range(4)])
+    mesh = meshes.mesh_of(boxes, hexes=True)
+    mesh = meshes.with_values(mesh, mesh.points.sum(axis=1) % 2)
+    kept = skeleton_of(mesh)
+    walls = np.zeros(boxes.shape, bool)
+    walls[tuple(np.argwhere(boxes)[kept].T)] = True
+    assert outside_of(np.pad(boxes, 1))[2, 2, 3] < outside_of(np.pad(walls, 1))[2, 2, 3]
+    assert Glued(mesh).lost_loops(kept) == 0
+    assert_same_as_full_scan(mesh)
+
+
+def outside_of(walls: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """The boxes that can be reached from the first one through faces, without a wall."""
+    reached = np.zeros(walls.shape, bool)
+    reached[0, 0, 0] = True
+    for _ in range(walls.size):
+        for axis in range(3):
+            ahead, behind = np.roll(reached, 1, axis), np.roll(reached, -1, axis)  # the border is free all around
+            reached |= (ahead | behind) & ~walls
+    return reached
 
 
 def test_a_smooth_field_leaves_a_thin_skeleton() -> None:
