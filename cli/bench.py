@@ -17,11 +17,19 @@ if TYPE_CHECKING:
 @click.command(short_help="The papers' tables on your own data.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
+@click.option(
+    "-b",
+    "--backend",
+    type=click.Choice(["asc", "thinning"]),
+    default="asc",
+    show_default=True,
+    help="Volumes: climbing against marching cubes, or thinning against its rivals.",
+)
 @click.option("-i", "--isovalue", metavar="V", help="Volumes: a number, otsu or pNN; default as in convert.")
 @click.option("--csv", type=PATH, metavar="FILE", help="Volumes: the table as CSV.")
 @click.option("--markdown", type=PATH, metavar="FILE", help="Volumes: the table as Markdown.")
 @click.option("--plot", type=PATH, metavar="FILE", help="Volumes: triangles and time by block size, SVG.")
-@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes: how many.")
+@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes, thinning: how many.")
 @click.option("--threads", default=None, type=click.IntRange(1), help="Threads for drawing.")
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
@@ -39,9 +47,12 @@ def bench(
     \b
     isocore bench sample_volumes/knot.nii.gz -i 200 --plot knot.svg
     isocore bench sample_volumes/torus.vtu
+    isocore bench sample_volumes/knot.nii.gz -b thinning
     """
     if len(files) > 1 and any(chosen[option] for option in ("csv", "markdown", "plot")):
         raise click.UsageError("--csv, --markdown and --plot name one file; give one FILE")
+    if chosen["backend"] == "thinning" and any(chosen[option] for option in ("isovalue", "csv", "markdown", "plot")):
+        raise click.UsageError("-i, --csv, --markdown and --plot belong to -b asc; -b thinning takes --isovalues")
     from isocore.errors import IsocoreError
 
     failures = 0
@@ -67,12 +78,15 @@ def bench(
 def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) -> list[Table]:
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
+    from isocore.grid_bench import grid_bench
     from isocore.readers import read
     from isocore.thinning_bench import mesh_bench
 
     field = read(path, read_options(chosen))
     try:
         if not isinstance(field, CellMesh):
+            if chosen["backend"] == "thinning":
+                return grid_bench(field, isovalues=isovalues, threads=threads)
             return [_volume_table(field, threads, chosen)]
         return mesh_bench(field, isovalues=isovalues, threads=threads)
     except FieldError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -31,6 +32,26 @@ def test_a_volume_gives_the_papers_table_and_plot(tmp_path: Path) -> None:
     assert files["markdown"].read_text().count("\n|") == len(rows) + 2
     drawn = ET.fromstring(files["plot"].read_text())
     assert drawn.tag.endswith("svg") and len(drawn.findall("{*}polyline")) == 2
+
+
+def test_thinning_meets_its_rivals_on_a_volume(tmp_path: Path) -> None:
+    """All of them find the same cells, the octree among them; only the full scan looks at every one."""
+    source = write_nifti(tmp_path / "ball.nii", ball())
+    result = CliRunner().invoke(bench, [str(source), "-b", "thinning", "--isovalues", "5", "--json"])
+    assert result.exit_code == 0, result.output
+    rows = {row["method"]: row for row in json.loads(result.stdout)[0]["tables"][0]["rows"]}
+    assert {"full scan", "octree", "volume thinning, drawn"} <= set(rows)
+    assert len({row["intersected"] for row in rows.values()}) == 1
+    assert rows["octree"]["visited"] < rows["full scan"]["visited"]
+    assert rows["volume thinning, drawn"]["registered"] < rows["octree"]["registered"]
+
+
+def test_thinning_on_a_volume_takes_no_isovalue(tmp_path: Path) -> None:
+    """An option of the other table is refused, exit code 2."""
+    source = write_nifti(tmp_path / "ball.nii", ball())
+    result = CliRunner().invoke(bench, [str(source), "-b", "thinning", "-i", "50"])
+    assert result.exit_code == 2
+    assert "--isovalues" in result.stderr
 
 
 def test_bench_refuses_an_isovalue_that_draws_nothing(tmp_path: Path) -> None:
