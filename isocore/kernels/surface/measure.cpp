@@ -76,13 +76,15 @@ Topology inspect_window(const Corners<Offset>& corners, std::size_t begin, std::
         }
         plain_corners += count;
         const std::uint32_t starts = starts_of_earlier_runs(slots, count);
-        const std::int32_t first = self + slots.edges[std::countr_zero(starts | 1U << (kSlots - 1))].to;
-        if (std::has_single_bit(starts) && first >= window_begin) {  // nearly always
+        if (starts == 0) continue;
+        const std::int32_t first = self + slots.edges[static_cast<std::size_t>(std::countr_zero(starts))].to;
+        if (first >= window_begin) {
             components.hang_below(self, first);
             ++hanging;
         } else {
-            join_ring(slots, starts, self, window_begin, components, sum);
+            sum.across.emplace_back(self, first);
         }
+        join_ring(slots, starts & (starts - 1), self, window_begin, components, sum);  // nearly always none
     }
     sum.used_vertices = used;
     sum.joins += hanging;

@@ -54,6 +54,17 @@ inline std::uint32_t starting_at(const Slots<std::int16_t>& link, std::int16_t p
     return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(found, _mm_setzero_si128())));
 }
 
+inline std::uint32_t starting_at(const Slots<std::int32_t>& link, std::int32_t place) {
+    const auto* pairs = reinterpret_cast<const __m128*>(link.edges.data());
+    const __m128i wanted = _mm_set1_epi32(place);
+    const auto four = [&](std::size_t i) {
+        const __m128 from = _mm_shuffle_ps(pairs[i], pairs[i + 1], _MM_SHUFFLE(2, 0, 2, 0));
+        return _mm_cmpeq_epi32(_mm_castps_si128(from), wanted);
+    };
+    const __m128i found = _mm_packs_epi32(four(0), four(2));
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(found, _mm_setzero_si128())));
+}
+
 inline std::uint32_t earlier_ends(const Slots<std::int16_t>& link) {
     const LinkRegisters edges(link);
     return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(edges.to, edges.from)));
