@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -11,7 +13,6 @@
 #include "climbing/deviation.hpp"
 #include "climbing/layout.hpp"
 #include "climbing/partition.hpp"
-#include "common/parallel.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -32,17 +33,26 @@ struct Bars {
     std::vector<Bar> bars;  // [z][y]
     std::size_t triangles_at_most = 0;
 
-    // Calls visit(origin, first box, end of boxes) for every visited block of a bar.
+    // Calls visit(origin, boxes, rows of single cells) for every visited block of a bar.
     template <class Visit>
-    void visit(std::size_t bar, const Visit& visit) const {
-        const HighRice* box = bars[bar].boxes.data();
-        for (const VisitedBlock& block : bars[bar].blocks) {
-            const HighRice* end = box + block.boxes;
-            visit(Dims{block.x, block_size * (bar % blocks[1]), block_size * (bar / blocks[1])}, box, end);
-            box = end;
+    void visit(std::size_t number, const Visit& visit) const {
+        const Bar& bar = bars[number];
+        std::span<const HighRice> boxes = bar.boxes;
+        std::span<const CellRow> cell_rows = bar.cell_rows;
+        for (const VisitedBlock block : bar.blocks) {
+            visit(Dims{block.x, block_size * (number % blocks[1]), block_size * (number / blocks[1])}, boxes.first(block.boxes),
+                  cell_rows.first(block.cell_rows));
+            boxes = boxes.subspan(block.boxes);
+            cell_rows = cell_rows.subspan(block.cell_rows);
         }
     }
 };
+
+inline std::size_t count_highrices(const Bar& bar) {
+    std::size_t count = bar.boxes.size();
+    for (const CellRow& row : bar.cell_rows) count += static_cast<std::size_t>(std::popcount(row.cells));
+    return count;
+}
 
 inline Bars lay_out_bars(const SignGrid& signs, int block_size) {
     if (block_size < 1 || block_size > 32 || !std::has_single_bit(static_cast<unsigned>(block_size))) {
@@ -55,19 +65,16 @@ inline Bars lay_out_bars(const SignGrid& signs, int block_size) {
     return out;
 }
 
-// Marks every box in the layout. Layers of bars meet in one plane of samples, so they take turns.
-inline void mark_all(const Bars& bars, int threads, Layout& layout) {
-    const std::size_t layers = bars.blocks[2];
-    for (std::size_t parity = 0; parity < 2; ++parity) {
-        parallel_for(threads, (layers + 1 - parity) / 2, [&](std::size_t n) {
-            const std::size_t first = (2 * n + parity) * bars.blocks[1];
-            for (std::size_t bar = first; bar < first + bars.blocks[1]; ++bar) {
-                bars.visit(bar, [&](const Dims& origin, const HighRice* box, const HighRice* end) {
-                    for (; box != end; ++box) layout.mark(origin, *box);
-                });
-            }
-        });
+// Vertices of a row's edges along each axis.
+inline std::array<std::uint32_t, 3> count_vertices(const SignGrid& signs, const Layout& layout, std::size_t j, std::size_t k) {
+    std::array<std::uint32_t, 3> counts = count_crossings(signs, j, k);
+    std::size_t first = layout.first_crossing(j, k);
+    for (std::uint32_t& count : counts) {
+        const std::size_t end = first + count;
+        count = layout.count(first, end);
+        first = end;
     }
+    return counts;
 }
 
 // How many triangles a bar draws at most: a loop of n vertices gives n - 2, and a vertex lies on at most four boxes,
@@ -81,27 +88,20 @@ inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& b
         std::size_t corners = 0;
         for (std::size_t k = k0; k <= k1; ++k) {
             for (std::size_t j = j0; j <= j1; ++j) {
+                if (layout.vertices_in(j, k) == 0) continue;
                 const std::size_t sides_j = j == j0 || j == j1 ? 1 : 2, sides_k = k == k0 || k == k1 ? 1 : 2;
-                const auto counts = layout.row_counts(j, k);
+                const auto counts = count_vertices(signs, layout, j, k);
                 corners += counts[0] * sides_j * sides_k;
                 if (j < j1) corners += counts[1] * 2 * sides_k;
                 if (k < k1) corners += counts[2] * 2 * sides_j;
             }
         }
         Bar& here = bars.bars[bar];
-        here.capacity = std::max(here.capacity, corners - 2 * here.boxes.size());
+        here.capacity = std::max(here.capacity, corners - 2 * count_highrices(here));
         here.first_triangle = next;
         next += here.capacity;
     }
     bars.triangles_at_most = next;
-}
-
-inline std::size_t count_crossings(const SignGrid& signs, std::size_t j, std::size_t k) {
-    std::size_t count = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        for (std::size_t w = 0; w < signs.words; ++w) count += static_cast<std::size_t>(std::popcount(crossed_edges(signs, axis, j, k, w)));
-    }
-    return count;
 }
 
 // Closes the gaps that the bound left between the bars' triangles.
@@ -121,7 +121,7 @@ inline Facts sum_facts(const Bars& bars) {
     Facts facts;
     facts.blocks = bars.blocks[0] * bars.blocks[1] * bars.blocks[2];
     for (const Bar& bar : bars.bars) {
-        facts.highrices += bar.boxes.size();
+        facts.highrices += count_highrices(bar);
         facts.blocks_visited += bar.blocks.size();
         facts.ambiguous_faces += bar.ambiguous_faces;
         facts.ambiguous_cells += bar.ambiguous_cells;

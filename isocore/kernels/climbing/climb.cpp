@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "climbing/bars.hpp"
-#include "climbing/crossings.hpp"
 #include "climbing/drawer.hpp"
 #include "climbing/layout.hpp"
 #include "climbing/partition.hpp"
@@ -30,32 +29,23 @@ class Gatherer final : public Judge {
           signs_(signs),
           isovalue_(options.isovalue) {}
 
-    void gather(const Dims& origin, const std::array<int, 3>& cells, const std::uint64_t* rows, int stride, Clouds& clouds) const override {
-        const HighRice block{{}, {static_cast<std::uint8_t>(cells[0]), static_cast<std::uint8_t>(cells[1]), static_cast<std::uint8_t>(cells[2])}};
-        const auto edges = [&](int axis, int j, int k) {
-            const std::uint64_t* row = rows + j + stride * k;
-            return axis == 0 ? row[0] ^ row[0] >> 1 : row[0] ^ row[axis == 1 ? 1 : stride];
-        };
-        std::size_t count = 0;
-        for (int k = 0; k <= cells[2]; ++k) {
-            for (int j = 0; j <= cells[1]; ++j) {
+    void gather(const Site& site, Clouds& clouds) const override {
+        for (int k = 0; k <= site.cells[2]; ++k) {
+            for (int j = 0; j <= site.cells[1]; ++j) {
                 for (int axis = 0; axis < 3; ++axis) {
-                    if ((axis == 1 && j == cells[1]) || (axis == 2 && k == cells[2])) continue;
-                    count += static_cast<std::size_t>(std::popcount(edges(axis, j, k)));
+                    for (std::uint64_t left = site.row(j, k).crossed[static_cast<std::size_t>(axis)]; left; left &= left - 1) {
+                        const Place at{std::countr_zero(left), j, k};
+                        const auto whole = [&](std::size_t a) { return site.origin[a] + static_cast<std::size_t>(at[a]); };
+                        float place[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+                        place[axis] += static_cast<float>(edge_crossing(samples_, signs_, isovalue_, axis, whole(0), whole(1), whole(2)));
+                        clouds.add({place[0] * scale[0], place[1] * scale[1], place[2] * scale[2]});
+                    }
                 }
             }
         }
-        clouds.reset(count, kLevels);
-        visit_edges(block, cells, edges, [&](int axis, const Place& at) {
-            float place[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-            const auto whole = [&](std::size_t a) { return origin[a] + static_cast<std::size_t>(at[a]); };
-            place[axis] += static_cast<float>(edge_crossing(samples_, signs_, isovalue_, axis, whole(0), whole(1), whole(2)));
-            clouds.add(place[0], place[1], place[2]);
-        });
     }
 
   private:
-    static constexpr std::size_t kLevels = 3 * 5 + 3;  // the block, at most five halvings per axis, one box on trial
     const GridView<Sample>& samples_;
     const SignGrid& signs_;
     double isovalue_;
@@ -70,29 +60,31 @@ class Climb {
           options_(options),
           signs_(classify(samples, options.isovalue, options.below, options.capped, options.threads)),
           bars_(lay_out_bars(signs_, options.block_size)),
-          layout_(signs_) {}
+          layout_(signs_, options.threads) {}
 
     void partition() {
         const Gatherer<Sample> gatherer(samples_, signs_, options_);
         const bool bounded = std::isfinite(options_.max_error);
         for_bars([&](std::size_t n, Bar& bar) {
             static_cast<BarBoxes&>(bar) = partition_bar(signs_, options_.block_size, n % bars_.blocks[1], n / bars_.blocks[1],
-                                                        bounded ? &gatherer : nullptr);
+                                                        bounded ? &gatherer : nullptr, layout_);
         });
-        mark_all(bars_, options_.threads, layout_);
     }
 
     void number_and_place_vertices() {
         const std::size_t rows = signs_.dims[1], planes = signs_.dims[2];
-        parallel_for(options_.threads, planes, [&](std::size_t k) {
-            for (std::size_t j = 0; j < rows; ++j) layout_.count_row(j, k);
-        });
-        mesh_.vertices.resize(3 * layout_.number());
+        mesh_.vertices.resize(3 * layout_.number(options_.threads));
         parallel_for(options_.threads, planes, [&](std::size_t k) {
             for (std::size_t j = 0; j < rows; ++j) {
-                Coordinate* out = mesh_.vertices.data() + 3 * std::size_t{layout_.base(j, k)[0]};
-                write_row_vertices(samples_, signs_, options_.isovalue, j, k, out,
-                                   [&](int axis, std::size_t w) { return layout_.kept(axis, w, j, k); });
+                if (layout_.vertices_in(j, k) == 0) continue;
+                std::size_t crossing = layout_.first_crossing(j, k);
+                write_row_vertices(samples_, signs_, options_.isovalue, j, k, mesh_.vertices.data() + 3 * std::size_t{layout_.first_vertex(j, k)},
+                                   [&](int axis, std::size_t w) {
+                                       const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
+                                       const std::size_t first = crossing;
+                                       crossing += static_cast<std::size_t>(std::popcount(crossed));
+                                       return layout_.kept(crossed, first);
+                                   });
             }
         });
     }
@@ -108,11 +100,10 @@ class Climb {
     bool split() {
         const std::vector<LateBox> late = split_broken(signs_, bars_);
         if (late.empty()) return false;
-        std::vector<GridEdge> inserted;
-        for (const LateBox& part : late) layout_.insert(part.origin, part.box, inserted);
+        const std::vector<LateVertex> inserted = keep_late(signs_, late, options_.block_size, layout_);
         number_and_place_vertices();
         std::vector<std::size_t> numbers;
-        for (const GridEdge& edge : inserted) numbers.push_back(layout_.number(edge));
+        for (const auto& [crossing, j, k] : inserted) numbers.push_back(layout_.vertex(crossing, j, k));
         const Renumbering renumbered(std::move(numbers));
 
         std::vector<std::size_t> before;
@@ -132,9 +123,7 @@ class Climb {
     Mesh<Coordinate> take() {
         close_gaps(bars_, mesh_.triangles);
         mesh_.facts = sum_facts(bars_);
-        for (std::size_t k = 0; k < signs_.dims[2]; ++k) {
-            for (std::size_t j = 0; j < signs_.dims[1]; ++j) mesh_.facts.crossings += count_crossings(signs_, j, k);
-        }
+        mesh_.facts.crossings = layout_.crossings();
         return std::move(mesh_);
     }
 

@@ -2,56 +2,82 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
+#include <limits>
 
 #include "common/array.hpp"
+#include "common/lanes.hpp"
 
 namespace isocore::climbing {
 
-// In samples from the block's origin.
-struct Cloud {
-    const float *x, *y, *z;
-    std::size_t size;
+// The place of a crossing relative to its block, in the unit of the error bound.
+using Spot = std::array<float, 3>;
+
+// A closed box in the same unit.
+struct Extent {
+    Spot low, high;
 };
+
+// Some spots, axis by axis. What fills up the last lanes is far from every box.
+struct Cloud {
+    std::array<const float*, 3> axes{};
+    std::size_t size = 0, lanes = 0;
+
+    Spot operator[](std::size_t n) const { return {axes[0][n], axes[1][n], axes[2][n]}; }
+};
+
+using Numbers = Lanes<float>;
+
+// The lanes of a cloud from n on that lie in a closed box.
+inline LaneMask<float> within(const Extent& box, const Numbers& x, const Numbers& y, const Numbers& z) {
+    return (Numbers(box.low[0]) <= x) & (x <= box.high[0]) & (Numbers(box.low[1]) <= y) & (y <= box.high[1]) & (Numbers(box.low[2]) <= z) &
+           (z <= box.high[2]);
+}
 
 // A stack of clouds. Room for all levels of a block is made once, so that pushing never moves what lies below.
 class Clouds {
   public:
     // Forgets everything and makes room for `levels` clouds of at most `size` points.
     void reset(std::size_t size, std::size_t levels) {
-        for (auto& axis : places_) axis.resize(size * levels);
-        top_ = 0;
+        for (auto& axis : places_) axis.resize((size + 2 * kLanes<float>) * levels);
+        start_ = top_ = 0;
     }
-    void add(float x, float y, float z) {
-        places_[0][top_] = x;
-        places_[1][top_] = y;
-        places_[2][top_++] = z;
+    void add(const Spot& spot) {
+        for (std::size_t a = 0; a < 3; ++a) places_[a][top_] = spot[a];
+        ++top_;
+    }
+    // Ends the cloud that was added since the last one.
+    Cloud finish() {
+        Cloud out;
+        out.size = top_ - start_;
+        for (std::size_t a = 0; a < 3; ++a) out.axes[a] = places_[a].data() + start_;
+        for (; (top_ - start_) % kLanes<float> != 0; ++top_) {
+            for (auto& axis : places_) axis[top_] = std::numeric_limits<float>::infinity();
+        }
+        out.lanes = top_ - start_;
+        start_ = top_;
+        return out;
     }
     std::size_t top() const { return top_; }
-    void pop(std::size_t top) { top_ = top; }
-    Cloud since(std::size_t start) const {
-        return {places_[0].data() + start, places_[1].data() + start, places_[2].data() + start, top_ - start};
-    }
+    void pop(std::size_t top) { start_ = top_ = top; }
 
-    // Pushes the points of `from` within a closed box.
-    Cloud within(const Cloud& from, const std::array<float, 3>& low, const std::array<float, 3>& high) {
-        const std::size_t start = top_;
-        float *x = places_[0].data(), *y = places_[1].data(), *z = places_[2].data();
-        std::size_t next = top_;
-        for (std::size_t n = 0; n < from.size; ++n) {
-            x[next] = from.x[n];
-            y[next] = from.y[n];
-            z[next] = from.z[n];
-            next += static_cast<std::size_t>((from.x[n] >= low[0]) & (from.x[n] <= high[0]) & (from.y[n] >= low[1]) &
-                                             (from.y[n] <= high[1]) & (from.z[n] >= low[2]) & (from.z[n] <= high[2]));
+    // Pushes the points of `from` within a box.
+    Cloud push(const Cloud& from, const Extent& box) {
+        for (std::size_t n = 0; n < from.lanes; n += kLanes<float>) {
+            const Numbers x(from.axes[0] + n), y(from.axes[1] + n), z(from.axes[2] + n);
+            const unsigned here = within(box, x, y, z).bits();
+            x.pack(here, places_[0].data() + top_);
+            y.pack(here, places_[1].data() + top_);
+            z.pack(here, places_[2].data() + top_);
+            top_ += static_cast<std::size_t>(std::popcount(here));
         }
-        top_ = next;
-        return since(start);
+        return finish();
     }
 
   private:
     std::array<Array<float>, 3> places_;
-    std::size_t top_ = 0;
+    std::size_t start_ = 0, top_ = 0;
 };
 
 }  // namespace isocore::climbing

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "climbing/climb.hpp"
 #include "climbing/vectors.hpp"
+#include "common/lanes.hpp"
 
 namespace isocore::climbing {
 
@@ -25,43 +25,74 @@ inline void add(Deviation& sum, const Deviation& other) {
     sum.squares += other.squares;
 }
 
+// Several points at once.
+struct Points {
+    using Numbers = Lanes<double>;
+    static constexpr std::size_t kAtOnce = kLanes<double>;
+    Numbers x, y, z;
+};
+
 // One triangle, prepared for many points.
 class Facet {
   public:
     Facet(const Point& a, const Point& b, const Point& c) : corners_{a, b, c} {
         const Point normal = cross(minus(b, a), minus(c, a));
-        const double length = std::sqrt(dot(normal, normal));
-        for (std::size_t n = 0; n < 3; ++n) normal_[n] = normal[n] / length;
-        for (std::size_t side = 0; side < 3; ++side) inward_[side] = cross(normal_, minus(corners_[(side + 1) % 3], corners_[side]));
+        height_ = plane(normal, a);
+        squared_ = 1 / dot(normal, normal);
+        for (std::size_t side = 0; side < 3; ++side) {
+            along_[side] = minus(corners_[(side + 1) % 3], corners_[side]);
+            inward_[side] = plane(cross(normal, along_[side]), corners_[side]);
+            shortened_[side] = 1 / dot(along_[side], along_[side]);
+        }
     }
 
-    bool is_above(const Point& p) const {
-        for (std::size_t side = 0; side < 3; ++side) {
-            if (!(dot(inward_[side], minus(p, corners_[side])) >= 0)) return false;
-        }
-        return true;
+    // The squared heights of those points that lie above or below the triangle; `beyond` for the others.
+    Points::Numbers squared_heights(const Points& p, const Points::Numbers& beyond) const {
+        const Points::Numbers zero(0.0), height = over(height_, p);
+        const auto above = (zero <= over(inward_[0], p)) & (zero <= over(inward_[1], p)) & (zero <= over(inward_[2], p));
+        return choose(above, height * height * squared_, beyond);
     }
-    double height(const Point& p) const { return std::abs(dot(normal_, minus(p, corners_[0]))); }
-    double squared_distance_to_sides(const Point& p) const {
-        return std::min({squared_distance_to_segment(p, corners_[0], corners_[1]), squared_distance_to_segment(p, corners_[1], corners_[2]),
-                         squared_distance_to_segment(p, corners_[2], corners_[0])});
+
+    Points::Numbers squared_distances_to_sides(const Points& p) const {
+        const Points::Numbers zero(0.0), one(1.0);
+        Points::Numbers best(std::numeric_limits<double>::infinity());
+        for (std::size_t side = 0; side < 3; ++side) {
+            const Point &corner = corners_[side], &along = along_[side];
+            const Points from{p.x - corner[0], p.y - corner[1], p.z - corner[2]};
+            const Points::Numbers dot = from.x * along[0] + from.y * along[1] + from.z * along[2];
+            const Points::Numbers t = least(greatest(dot * shortened_[side], zero), one);
+            const Points off{from.x - t * along[0], from.y - t * along[1], from.z - t * along[2]};
+            best = least(best, off.x * off.x + off.y * off.y + off.z * off.z);
+        }
+        return best;
     }
 
   private:
-    std::array<Point, 3> corners_;
-    Point normal_;
-    std::array<Point, 3> inward_;
+    struct Plane {
+        Point normal;
+        double offset;
+    };
+    static Plane plane(const Point& normal, const Point& through) { return {normal, -dot(normal, through)}; }
+    static Points::Numbers over(const Plane& plane, const Points& p) {
+        return p.x * plane.normal[0] + p.y * plane.normal[1] + p.z * plane.normal[2] + plane.offset;
+    }
+
+    std::array<Point, 3> corners_, along_;
+    Plane height_;    // not to scale: squares of its heights are multiplied by squared_
+    double squared_;
+    std::array<Plane, 3> inward_;
+    std::array<double, 3> shortened_;  // 1 over the squared length of each side
 };
 
-// A bound from above on the distance from a point to some triangles; exact but where several lie below it.
-inline double distance_to(const std::vector<Facet>& facets, const Point& p) {
-    double best = std::numeric_limits<double>::infinity();
-    for (const Facet& facet : facets) {
-        if (facet.is_above(p)) best = std::min(best, facet.height(p));
-    }
-    if (std::isfinite(best)) return best;
-    for (const Facet& facet : facets) best = std::min(best, facet.squared_distance_to_sides(p));
-    return std::sqrt(best);
+// Bounds from above on the squared distances from points to some triangles; exact but where several lie below a point.
+inline Points::Numbers squared_distances(const std::vector<Facet>& facets, const Points& p) {
+    const Points::Numbers infinity(std::numeric_limits<double>::infinity());
+    Points::Numbers best = infinity;
+    for (const Facet& facet : facets) best = least(best, facet.squared_heights(p, infinity));
+    if (!(best == infinity).any()) return best;
+    Points::Numbers beside = infinity;
+    for (const Facet& facet : facets) beside = least(beside, facet.squared_distances_to_sides(p));
+    return choose(best == infinity, beside, best);
 }
 
 }  // namespace isocore::climbing

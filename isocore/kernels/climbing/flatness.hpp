@@ -3,146 +3,151 @@
 // its boxes are as large as simplicity allows. What this test lets through is measured afterwards all the same.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "climbing/cloud.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/vectors.hpp"
 
 namespace isocore::climbing {
 
 class Flatness {
   public:
-    Flatness(double max_error, const Point& scale) : max_error_(max_error), scale_(scale) {}
+    using Ring = std::array<Spot, 6>;  // the crossings on a box's edges, in the order of its Rim
 
-    // cloud: all crossings of the closed disk box `low` ... `high`; corners: its eight signs.
-    bool operator()(const Cloud& cloud, const std::array<float, 3>& low, const std::array<float, 3>& high, unsigned corners) {
-        const Rim& rim = kRims[corners];
-        const auto ends = find_faces(cloud, low, high);
-        std::array<Point, 6> ring{};
-        for (unsigned n = 0; n < rim.length; ++n) ring[n] = place(cloud, ends[rim.edges[n]]);
-        Point normal{};
+    explicit Flatness(double max_error) : max_error_(static_cast<float>(max_error)) {}
+
+    // around: all crossings in the closed disk box, and perhaps others.
+    bool operator()(const Cloud& around, const Extent& box, const Rim& rim, const Ring& ring) const {
+        Spot normal{};
         for (unsigned n = 2; n < rim.length; ++n) {
-            const Point part = cross(minus(ring[n - 1], ring[0]), minus(ring[n], ring[0]));
+            const Spot part = cross(minus(ring[n - 1], ring[0]), minus(ring[n], ring[0]));
             for (std::size_t a = 0; a < 3; ++a) normal[a] += part[a];
         }
-        return in_slab(cloud, ring, rim.length, normal) && near_chords(cloud, ring, rim);
+        return normalise(normal) && in_slab(around, box, ring, rim.length, normal) && near_chords(around, box, ring, rim);
     }
 
   private:
-    static constexpr double kWorthFitting = 3;  // a slab this many times too thick is not saved by a better plane
+    static constexpr float kWorthFitting = 2;  // a slab this many times too thick is hardly ever saved by a better plane
 
-    Point place(const Cloud& cloud, std::size_t n) const {
-        return {cloud.x[n] * scale_[0], cloud.y[n] * scale_[1], cloud.z[n] * scale_[2]};
+    static Spot minus(const Spot& a, const Spot& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+    static float dot(const Spot& a, const Spot& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+    static Spot cross(const Spot& a, const Spot& b) {
+        return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     }
-
-    // Notes the faces of the box that each point lies on; returns the point on each crossed edge of the box.
-    std::array<std::size_t, 12> find_faces(const Cloud& cloud, const std::array<float, 3>& low, const std::array<float, 3>& high) {
-        std::array<std::size_t, 12> ends{};
-        faces_.resize(cloud.size);
-        for (std::size_t n = 0; n < cloud.size; ++n) {
-            faces_[n] = static_cast<std::uint8_t>((cloud.x[n] == low[0]) | (cloud.x[n] == high[0]) << 1 | (cloud.y[n] == low[1]) << 2 |
-                                                  (cloud.y[n] == high[1]) << 3 | (cloud.z[n] == low[2]) << 4 | (cloud.z[n] == high[2]) << 5);
-        }
-        for (std::size_t n = 0; n < cloud.size; ++n) {
-            if (faces_[n] & (faces_[n] - 1)) ends[kEdgeOnFaces[faces_[n]]] = n;
-        }
-        return ends;
-    }
-
-    static constexpr std::array<std::uint8_t, 64> kEdgeOnFaces = [] {
-        std::array<std::uint8_t, 64> edges{};
-        for (int edge = 0; edge < 12; ++edge) {
-            unsigned faces = 0;
-            for (int face = 0; face < 6; ++face) faces |= static_cast<unsigned>(cube::edge_on_face(edge, face)) << face;
-            edges[faces] = static_cast<std::uint8_t>(edge);
-        }
-        return edges;
-    }();
-
-    struct Slab {
-        double low, high;
-    };
-
-    // The points' heights above the plane through the origin across `normal`.
-    static Slab slab(const float* x, const float* y, const float* z, std::size_t size, const std::array<float, 3>& normal) {
-        float low = std::numeric_limits<float>::infinity(), high = -low;
-        for (std::size_t n = 0; n < size; ++n) {
-            const float height = x[n] * normal[0] + y[n] * normal[1] + z[n] * normal[2];
-            low = height < low ? height : low;
-            high = height > high ? height : high;
-        }
-        return {low, high};
-    }
-
-    bool in_slab(const Cloud& cloud, const std::array<Point, 6>& ring, unsigned corners, Point normal) const {
-        const double length = std::sqrt(dot(normal, normal));
+    static bool normalise(Spot& a) {
+        const float length = std::sqrt(dot(a, a));
         if (!(length > 0)) return false;
-        for (double& n : normal) n /= length;
-        double low = dot(ring[0], normal), high = low;
+        for (float& x : a) x /= length;
+        return true;
+    }
+
+    template <class Visit>
+    static void each(const Cloud& cloud, const Visit& visit) {
+        for (std::size_t n = 0; n < cloud.lanes; n += kLanes<float>) {
+            visit(Numbers(cloud.axes[0] + n), Numbers(cloud.axes[1] + n), Numbers(cloud.axes[2] + n));
+        }
+    }
+
+    bool in_slab(const Cloud& around, const Extent& box, const Ring& ring, unsigned corners, Spot normal) const {
+        float low = dot(ring[0], normal), high = low;
         for (unsigned n = 1; n < corners; ++n) {
-            low = std::min(low, dot(ring[n], normal));
-            high = std::max(high, dot(ring[n], normal));
+            const float height = dot(ring[n], normal);
+            low = std::min(low, height);
+            high = std::max(high, height);
         }
         if (high - low > kWorthFitting * max_error_) return false;
-        double thickness = width(cloud, normal);
+        const float thickness = width(around, box, normal);
         if (thickness <= max_error_) return true;
         if (thickness > kWorthFitting * max_error_) return false;
-        return fit(cloud, normal) && width(cloud, normal) <= max_error_;
+        return fit(around, box, ring[0], normal) && width(around, box, normal) <= max_error_;
     }
 
-    double width(const Cloud& cloud, const Point& normal) const {
-        const Slab found = slab(cloud.x, cloud.y, cloud.z, cloud.size,
-                                {static_cast<float>(normal[0] * scale_[0]), static_cast<float>(normal[1] * scale_[1]),
-                                 static_cast<float>(normal[2] * scale_[2])});
-        return found.high - found.low;
+    // The thickness of the slab across `normal` that holds all crossings in the box.
+    static float width(const Cloud& around, const Extent& box, const Spot& normal) {
+        const Numbers infinity(std::numeric_limits<float>::infinity()), minus_infinity(-std::numeric_limits<float>::infinity());
+        Numbers low = infinity, high = minus_infinity;
+        each(around, [&](const Numbers& x, const Numbers& y, const Numbers& z) {
+            const auto here = within(box, x, y, z);
+            const Numbers height = x * normal[0] + y * normal[1] + z * normal[2];
+            low = least(low, choose(here, height, infinity));
+            high = greatest(high, choose(here, height, minus_infinity));
+        });
+        const auto lows = low.each(), highs = high.each();
+        return *std::max_element(highs.begin(), highs.end()) - *std::min_element(lows.begin(), lows.end());
     }
 
     // Turns the normal to that of the least-squares plane of heights over the plane across the old one.
-    bool fit(const Cloud& cloud, Point& normal) const {
-        const std::size_t least = std::abs(normal[0]) < std::abs(normal[1]) ? (std::abs(normal[0]) < std::abs(normal[2]) ? 0 : 2)
-                                                                            : (std::abs(normal[1]) < std::abs(normal[2]) ? 1 : 2);
-        Point u{};
-        u[least] = 1;
+    static bool fit(const Cloud& around, const Extent& box, const Spot& origin, Spot& normal) {
+        std::size_t least_axis = 0;
+        for (std::size_t a = 1; a < 3; ++a) {
+            if (std::abs(normal[a]) < std::abs(normal[least_axis])) least_axis = a;
+        }
+        Spot u{};
+        u[least_axis] = 1;
         u = cross(normal, u);
-        const double length = std::sqrt(dot(u, u));
-        for (double& n : u) n /= length;
-        const Point v = cross(normal, u);
-        double su = 0, sv = 0, sh = 0, suu = 0, suv = 0, svv = 0, suh = 0, svh = 0;
-        for (std::size_t n = 0; n < cloud.size; ++n) {
-            const Point p = place(cloud, n);
-            const double pu = dot(p, u), pv = dot(p, v), h = dot(p, normal);
-            su += pu, sv += pv, sh += h, suu += pu * pu, suv += pu * pv, svv += pv * pv, suh += pu * h, svh += pv * h;
+        normalise(u);
+        const Spot v = cross(normal, u);
+        std::array<Numbers, 9> sums;
+        const Numbers zero(0.0f), one(1.0f);
+        sums.fill(zero);
+        each(around, [&](const Numbers& x, const Numbers& y, const Numbers& z) {
+            const auto here = within(box, x, y, z);
+            const auto along = [&](const Spot& axis) {
+                return choose(here, (x - origin[0]) * axis[0] + (y - origin[1]) * axis[1] + (z - origin[2]) * axis[2], zero);
+            };
+            const Numbers a = along(u), b = along(v), h = along(normal);
+            const std::array<Numbers, 9> parts{choose(here, one, zero), a, b, h, a * a, a * b, b * b, a * h, b * h};
+            for (std::size_t n = 0; n < parts.size(); ++n) sums[n] = sums[n] + parts[n];
+        });
+        std::array<float, 9> sum{};
+        for (std::size_t n = 0; n < sum.size(); ++n) {
+            for (const float lane : sums[n].each()) sum[n] += lane;
         }
-        const double count = static_cast<double>(cloud.size);
-        suu -= su * su / count, suv -= su * sv / count, svv -= sv * sv / count, suh -= su * sh / count, svh -= sv * sh / count;
-        const double determinant = suu * svv - suv * suv;
-        if (!(determinant > 1e-9 * suu * svv)) return false;
-        const double a = (suh * svv - svh * suv) / determinant, b = (svh * suu - suh * suv) / determinant;
-        for (std::size_t n = 0; n < 3; ++n) normal[n] -= a * u[n] + b * v[n];
-        const double stretched = std::sqrt(dot(normal, normal));
-        for (double& n : normal) n /= stretched;
+        const float a = sum[1] / sum[0], b = sum[2] / sum[0], h = sum[3] / sum[0];
+        const float aa = sum[4] - sum[1] * a, ab = sum[5] - sum[1] * b, bb = sum[6] - sum[2] * b, ah = sum[7] - sum[1] * h, bh = sum[8] - sum[2] * h;
+        const float determinant = aa * bb - ab * ab;
+        if (!(determinant > 1e-5f * aa * bb)) return false;
+        const float along_u = (ah * bb - bh * ab) / determinant, along_v = (bh * aa - ah * ab) / determinant;
+        for (std::size_t n = 0; n < 3; ++n) normal[n] -= along_u * u[n] + along_v * v[n];
+        return normalise(normal);
+    }
+
+    // Does every crossing on a face lie near the line between the two on the face's rim?
+    bool near_chords(const Cloud& around, const Extent& box, const Ring& ring, const Rim& rim) const {
+        struct Chord {
+            std::size_t axis;
+            float side;
+            Spot from, along;
+            float shortened;  // 1 over its squared length
+        };
+        std::array<Chord, 6> chords;
+        for (unsigned n = 0; n < rim.length; ++n) {
+            const std::size_t axis = rim.faces[n] / 2u;
+            const Spot along = minus(ring[n + 1 < rim.length ? n + 1 : 0], ring[n]);
+            chords[n] = {axis, rim.faces[n] & 1 ? box.high[axis] : box.low[axis], ring[n], along, 1 / dot(along, along)};
+        }
+        const Numbers zero(0.0f), one(1.0f), bound(max_error_ * max_error_);
+        for (std::size_t n = 0; n < around.lanes; n += kLanes<float>) {
+            const std::array<Numbers, 3> at{Numbers(around.axes[0] + n), Numbers(around.axes[1] + n), Numbers(around.axes[2] + n)};
+            const auto here = within(box, at[0], at[1], at[2]);
+            for (unsigned c = 0; c < rim.length; ++c) {
+                const Chord& chord = chords[c];
+                const auto on_face = here & (at[chord.axis] == Numbers(chord.side));
+                if (!on_face.any()) continue;
+                std::array<Numbers, 3> off{at[0] - chord.from[0], at[1] - chord.from[1], at[2] - chord.from[2]};
+                const Numbers dot = off[0] * chord.along[0] + off[1] * chord.along[1] + off[2] * chord.along[2];
+                const Numbers t = least(greatest(dot * chord.shortened, zero), one);
+                for (std::size_t a = 0; a < 3; ++a) off[a] = off[a] - t * chord.along[a];
+                if ((on_face & (bound < off[0] * off[0] + off[1] * off[1] + off[2] * off[2])).any()) return false;
+            }
+        }
         return true;
     }
 
-    bool near_chords(const Cloud& cloud, const std::array<Point, 6>& ring, const Rim& rim) const {
-        for (std::size_t p = 0; p < cloud.size; ++p) {
-            if (faces_[p] == 0 || faces_[p] & (faces_[p] - 1)) continue;
-            unsigned n = 0;
-            while (faces_[p] != 1u << rim.faces[n]) ++n;
-            const double off = squared_distance_to_segment(place(cloud, p), ring[n], ring[(n + 1) % rim.length]);
-            if (off > max_error_ * max_error_) return false;
-        }
-        return true;
-    }
-
-    double max_error_;
-    Point scale_;
-    std::vector<std::uint8_t> faces_;
+    float max_error_;
 };
 
 }  // namespace isocore::climbing

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "common/cell_loops.hpp"
+#include "common/cube.hpp"
 
 namespace isocore::climbing {
 
@@ -32,6 +33,16 @@ constexpr std::array<Content, 256> derive_contents() {
     return contents;
 }
 inline constexpr std::array<Content, 256> kContents = derive_contents();
+
+inline constexpr std::array<std::uint8_t, 12> kFacesOfEdge = [] {
+    std::array<std::uint8_t, 12> faces{};
+    for (int edge = 0; edge < 12; ++edge) {
+        for (int face = 0; face < 6; ++face) {
+            faces[static_cast<std::size_t>(edge)] |= static_cast<std::uint8_t>(cube::edge_on_face(edge, face) << face);
+        }
+    }
+    return faces;
+}();
 
 // The loop that the surface draws on a disk box: its crossed edges in order, and the face between each and the next.
 struct Rim {

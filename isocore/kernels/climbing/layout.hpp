@@ -1,9 +1,9 @@
 // layout.hpp - How neighbours share their cuts. The paper lays out every face again after comparing the cuts of the
-// highrices on both sides; here both sides mark the grid edges on the twelve edges of their boxes in one set of bits,
-// and the marked edges that are crossed are the mesh's vertices.
+// highrices on both sides; here both sides keep the crossings on the twelve edges of their boxes, and what is kept by any
+// box is a vertex of the mesh. One bit per crossing, in the order of edge_vertices.hpp, is all that this takes.
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -11,130 +11,113 @@
 #include <stdexcept>
 #include <vector>
 
-#include "climbing/high_rice.hpp"
 #include "common/array.hpp"
 #include "common/edge_vertices.hpp"
+#include "common/parallel.hpp"
 
 namespace isocore::climbing {
 
-struct GridEdge {
-    int axis;
-    Dims low;
-};
+// Crossings of the edges of row (j, k) along each axis.
+inline std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::size_t j, std::size_t k) {
+    std::array<std::uint32_t, 3> counts{};
+    for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t w = 0; w < signs.words; ++w) {
+            counts[static_cast<std::size_t>(axis)] += static_cast<std::uint32_t>(std::popcount(crossed_edges(signs, axis, j, k, w)));
+        }
+    }
+    return counts;
+}
 
 class Layout {
   public:
-    explicit Layout(const SignGrid& signs) : signs_(signs), rows_(signs.dims[1] * signs.dims[2]) {
-        for (auto& axis : marks_) axis.assign(rows_ * signs.words, 0);
-        bases_.resize(rows_);
+    Layout(const SignGrid& signs, int threads) : rows_(signs.dims[1]), first_crossing_(rows_ * signs.dims[2] + 1), first_vertex_(first_crossing_.size()) {
+        parallel_for(threads, signs.dims[2], [&](std::size_t k) {
+            for (std::size_t j = 0; j < rows_; ++j) {
+                const auto counts = count_crossings(signs, j, k);
+                first_crossing_[row(j, k)] = counts[0] + counts[1] + counts[2];
+            }
+        });
+        crossings_ = add_up(first_crossing_, std::numeric_limits<std::uint32_t>::max());
+        kept_ = std::vector<std::atomic<std::uint64_t>>(crossings_ / 64 + 2);
     }
 
-    void mark(const Dims& origin, const HighRice& box) {
-        const std::size_t x0 = origin[0] + box.low[0], x1 = origin[0] + box.high[0];
-        const std::size_t y0 = origin[1] + box.low[1], y1 = origin[1] + box.high[1];
-        const std::size_t z0 = origin[2] + box.low[2], z1 = origin[2] + box.high[2];
-        const std::uint64_t along = (std::uint64_t{2} << (x1 - 1) % 64) - (std::uint64_t{1} << x0 % 64);
-        for (const std::size_t j : {y0, y1}) {
-            for (const std::size_t k : {z0, z1}) word(0, x0 / 64, j, k) |= along;
-        }
-        for (const std::size_t i : {x0, x1}) {
-            const std::uint64_t bit = std::uint64_t{1} << i % 64;
-            for (const std::size_t k : {z0, z1}) {
-                for (std::size_t j = y0; j < y1; ++j) word(1, i / 64, j, k) |= bit;
-            }
-            for (const std::size_t j : {y0, y1}) {
-                for (std::size_t k = z0; k < z1; ++k) word(2, i / 64, j, k) |= bit;
-            }
-        }
+    std::size_t crossings() const { return crossings_; }
+    std::uint32_t first_crossing(std::size_t j, std::size_t k) const { return first_crossing_[row(j, k)]; }
+    std::uint32_t first_vertex(std::size_t j, std::size_t k) const { return first_vertex_[row(j, k)]; }
+    std::size_t vertices_in(std::size_t j, std::size_t k) const { return first_vertex_[row(j, k) + 1] - first_vertex(j, k); }
+
+    // Keeps a crossing, from any thread. False if it was kept before.
+    bool keep(std::size_t crossing) {
+        std::atomic<std::uint64_t>& word = kept_[crossing / 64];
+        const std::uint64_t bit = std::uint64_t{1} << crossing % 64;
+        if (word.load(std::memory_order_relaxed) & bit) return false;
+        return !(word.fetch_or(bit, std::memory_order_relaxed) & bit);
     }
 
-    // Marks a late box and notes the crossed edges that were not kept before.
-    void insert(const Dims& origin, const HighRice& box, std::vector<GridEdge>& inserted) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-            for (const std::size_t at_u : {box.low[u], box.high[u]}) {
-                for (const std::size_t at_v : {box.low[v], box.high[v]}) {
-                    for (std::size_t along = box.low[axis]; along < box.high[axis]; ++along) {
-                        GridEdge edge{static_cast<int>(axis), origin};
-                        edge.low[u] += at_u, edge.low[v] += at_v, edge.low[axis] += along;
-                        const auto [i, j, k] = edge.low;
-                        std::uint64_t& kept = word(edge.axis, i / 64, j, k);
-                        const std::uint64_t bit = std::uint64_t{1} << i % 64;
-                        if ((kept & bit) || !(crossed_edges(signs_, edge.axis, j, k, i / 64) & bit)) continue;
-                        kept |= bit;
-                        inserted.push_back(edge);
-                    }
-                }
-            }
-        }
+    // Keeps those of some crossed edges that are cut, if the first of them is the crossing `first`.
+    void keep(std::uint64_t crossed, std::uint64_t cut, std::size_t first) {
+        if ((crossed & cut) == 0) return;
+        std::uint64_t bits = 0;
+        for (std::uint64_t bit = 1; crossed; crossed &= crossed - 1, bit <<= 1) bits |= crossed & -crossed & cut ? bit : 0;
+        add(first / 64, bits << first % 64);
+        if (first % 64 != 0) add(first / 64 + 1, bits >> (64 - first % 64));
     }
 
-    // The vertex number of a kept edge.
-    std::size_t number(const GridEdge& edge) const {
-        const auto [i, j, k] = edge.low;
-        const std::uint64_t* bits = row(static_cast<std::size_t>(edge.axis), j, k);
-        std::size_t out = base(j, k)[static_cast<std::size_t>(edge.axis)];
-        for (std::size_t w = 0; w < i / 64; ++w) out += static_cast<std::size_t>(std::popcount(bits[w]));
-        return out + static_cast<std::size_t>(std::popcount(bits[i / 64] & ((std::uint64_t{1} << i % 64) - 1)));
+    // How many of the crossings from `first` to before `end` are kept.
+    std::uint32_t count(std::size_t first, std::size_t end) const {
+        if (first >= end) return 0;
+        std::uint64_t word = kept_[first / 64].load(std::memory_order_relaxed) & ~std::uint64_t{0} << first % 64;
+        std::uint32_t out = 0;
+        for (std::size_t w = first / 64; w < end / 64; word = kept_[++w].load(std::memory_order_relaxed)) out += ones(word);
+        return out + ones(word & ~(~std::uint64_t{0} << end % 64));
     }
 
-    // Keeps of the marks those that are crossed, and counts them.
-    void count_row(std::size_t j, std::size_t k) {
-        RowBase& counts = bases_[j + signs_.dims[1] * k];
-        counts = {};
-        for (int axis = 0; axis < 3; ++axis) {
-            for (std::size_t w = 0; w < signs_.words; ++w) {
-                std::uint64_t& marks = word(axis, w, j, k);
-                marks &= crossed_edges(signs_, axis, j, k, w);
-                counts[static_cast<std::size_t>(axis)] += static_cast<std::uint32_t>(std::popcount(marks));
-            }
-        }
+    // Those of some crossed edges that are kept, if the first of them is the crossing `first`.
+    std::uint64_t kept(std::uint64_t crossed, std::size_t first) const {
+        if (crossed == 0) return 0;
+        std::uint64_t bits = kept_[first / 64].load(std::memory_order_relaxed) >> first % 64;
+        if (first % 64 != 0) bits |= kept_[first / 64 + 1].load(std::memory_order_relaxed) << (64 - first % 64);
+        std::uint64_t out = 0;
+        for (; crossed; crossed &= crossed - 1, bits >>= 1) out |= crossed & -crossed & -(bits & 1);
+        return out;
     }
 
-    // Turns counts into numbers, once; returns the number of vertices.
-    std::size_t number() {
-        std::size_t next = 0;
-        for (RowBase& row : bases_) {
-            for (std::uint32_t& axis : row) {
-                const std::uint32_t count = axis;
-                axis = static_cast<std::uint32_t>(next);
-                next += count;
-            }
-            if (next > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-                throw std::length_error("the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
-            }
-        }
-        return next;
+    // Numbers the vertices anew; returns how many there are.
+    std::size_t number(int threads) {
+        parallel_for(threads, (first_vertex_.size() - 1) / rows_, [&](std::size_t k) {
+            for (std::size_t n = rows_ * k; n < rows_ * (k + 1); ++n) first_vertex_[n] = count(first_crossing_[n], first_crossing_[n + 1]);
+        });
+        return add_up(first_vertex_, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
     }
 
-    // Vertices of a row's edges along each axis.
-    RowBase row_counts(std::size_t j, std::size_t k) const {
-        RowBase counts{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t w = 0; w < signs_.words; ++w) {
-                counts[axis] += static_cast<std::uint32_t>(std::popcount(kept(static_cast<int>(axis), w, j, k)));
-            }
-        }
-        return counts;
-    }
-
-    const RowBase& base(std::size_t j, std::size_t k) const { return bases_[j + signs_.dims[1] * k]; }
-    std::uint64_t kept(int axis, std::size_t w, std::size_t j, std::size_t k) const {
-        return marks_[static_cast<std::size_t>(axis)][(j + signs_.dims[1] * k) * signs_.words + w];
-    }
-    const std::uint64_t* row(std::size_t axis, std::size_t j, std::size_t k) const {
-        return marks_[axis].data() + (j + signs_.dims[1] * k) * signs_.words;
+    // The vertex that a kept crossing of row (j, k) is.
+    std::size_t vertex(std::size_t crossing, std::size_t j, std::size_t k) const {
+        return first_vertex(j, k) + count(first_crossing(j, k), crossing);
     }
 
   private:
-    std::uint64_t& word(int axis, std::size_t w, std::size_t j, std::size_t k) {
-        return marks_[static_cast<std::size_t>(axis)][(j + signs_.dims[1] * k) * signs_.words + w];
+    void add(std::size_t word, std::uint64_t bits) {
+        if (bits & ~kept_[word].load(std::memory_order_relaxed)) kept_[word].fetch_or(bits, std::memory_order_relaxed);
+    }
+    static std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
+    std::size_t row(std::size_t j, std::size_t k) const { return j + rows_ * k; }
+
+    // Turns counts into the sums of those before; the last one becomes the sum of all.
+    static std::size_t add_up(Array<std::uint32_t>& counts, std::size_t limit) {
+        std::size_t sum = 0;
+        counts.back() = 0;
+        for (std::uint32_t& n : counts) {
+            const std::uint32_t count = n;
+            n = static_cast<std::uint32_t>(sum);
+            sum += count;
+            if (sum > limit) throw std::length_error("the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
+        }
+        return sum;
     }
 
-    const SignGrid& signs_;
-    std::size_t rows_;
-    std::array<Array<std::uint64_t>, 3> marks_;
-    Array<RowBase> bases_;
+    std::size_t rows_, crossings_ = 0;
+    Array<std::uint32_t> first_crossing_, first_vertex_;  // by row, and one more
+    std::vector<std::atomic<std::uint64_t>> kept_;        // a bit per crossing
 };
 
 }  // namespace isocore::climbing

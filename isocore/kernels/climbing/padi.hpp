@@ -1,111 +1,117 @@
 // padi.hpp - A padi is the rectangle that two highrices share, a lign of cells thick on neither side: all its ligns are
-// simple, so one iso-line crosses it. Here the iso-lines of a whole box face are walked in one go: within the face of
-// a simple disk they form one staircase, and the kept edges it meets on its way are the rims of the padis.
+// simple, so one iso-line crosses it. The iso-lines of a whole box face form one path, which no lign meets twice, so it
+// runs one way along both axes: the kept edges in the face, row by row, are the rims of the padis in their order.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cstddef>
+#include <bit>
 #include <cstdint>
-#include <vector>
 
 #include "climbing/high_rice.hpp"
+#include "climbing/layout.hpp"
 #include "climbing/site.hpp"
 #include "common/cube.hpp"
 
 namespace isocore::climbing {
 
-// A crossed grid edge on a box: its axis, its lower sample, and the faces of the box it lies on, one bit each.
+// A crossed grid edge: its axis and its lower sample.
 struct RimEdge {
     int axis;
     Place at;
-    unsigned faces;
 };
 
-inline constexpr std::array<std::uint8_t, 12> kFacesOfEdge = [] {
-    std::array<std::uint8_t, 12> faces{};
-    for (int edge = 0; edge < 12; ++edge) {
-        for (int face = 0; face < 6; ++face) {
-            faces[static_cast<std::size_t>(edge)] |= static_cast<std::uint8_t>(cube::edge_on_face(edge, face) << face);
+// The crossed edges of a box, by its corner signs.
+inline constexpr std::array<std::uint16_t, 256> kCrossed = [] {
+    std::array<std::uint16_t, 256> crossed{};
+    for (unsigned corners = 0; corners < 256; ++corners) {
+        for (int edge = 0; edge < 12; ++edge) {
+            const unsigned low = corners >> cube::low_corner(edge) & 1, high = corners >> cube::high_corner(edge) & 1;
+            crossed[corners] |= static_cast<std::uint16_t>((low ^ high) << edge);
         }
     }
-    return faces;
+    return crossed;
 }();
 
-// The one crossing on a crossed edge of a simple box, by halving.
+// The one crossing on a crossed edge of a simple box.
 inline RimEdge box_crossing(const Site& site, const HighRice& box, int edge) {
     const int axis = edge / 4, corner = cube::low_corner(edge);
     const auto a = static_cast<std::size_t>(axis);
-    RimEdge out{axis, {}, kFacesOfEdge[static_cast<std::size_t>(edge)]};
+    RimEdge out{axis, {}};
     for (std::size_t n = 0; n < 3; ++n) out.at[n] = corner >> n & 1 ? box.high[n] : box.low[n];
-    int low = box.low[a], high = box.high[a];
-    if (high - low > 1) {
-        const bool first = site.sign(out.at);
-        while (high - low > 1) {
-            out.at[a] = (low + high) / 2;
-            (site.sign(out.at) == first ? low : high) = out.at[a];
-        }
-        out.at[a] = low;
-    }
+    const std::uint64_t signs = site.lign(axis, out.at);
+    out.at[a] = std::countr_zero((signs ^ signs >> 1) & ~std::uint64_t{0} << box.low[a]);
     return out;
 }
 
-// The loop of a disk box: every vertex on its surface, in the order that turns its triangles outwards.
-class RimWalk {
-  public:
-    void loop(const Site& site, const HighRice& box, const Rim& rim, std::vector<RimEdge>& out) const {
-        out.clear();
-        std::array<RimEdge, 7> ends;
-        for (unsigned n = 0; n < rim.length; ++n) ends[n] = box_crossing(site, box, rim.edges[n]);
-        ends[rim.length] = ends[0];
-        for (unsigned n = 0; n < rim.length; ++n) {
-            out.push_back(ends[n]);
-            const auto across = cube::other_axes(rim.faces[n] / 2);
-            const int around = box.length(static_cast<std::size_t>(across[0])) + box.length(static_cast<std::size_t>(across[1]));
-            if (around == 3) peek(site, box, rim.faces[n], out);
-            if (around > 3) walk(site, box, rim.faces[n], ends[n], ends[n + 1], out);
+// Makes vertices of the crossings on the edges of a box; calls visit(number, lower sample) for those that were none.
+template <class Visit>
+void keep_edges(const Site& site, const HighRice& box, Layout& layout, const Visit& visit) {
+    for (unsigned left = kCrossed[site.corners(box)]; left; left &= left - 1) {
+        const RimEdge edge = box_crossing(site, box, std::countr_zero(left));
+        const std::size_t number = site.crossing(edge.axis, edge.at);
+        if (layout.keep(number)) visit(number, edge.at);
+    }
+}
+
+namespace padi {
+
+// Calls visit(edge) for the kept edges within a face, from the crossing `from` on its rim to the crossing `to`.
+template <class Visit>
+void walk_face(const Site& site, const HighRice& box, int face, const RimEdge& from, const RimEdge& to, const Visit& visit) {
+    const int normal = face / 2;
+    const auto across = cube::other_axes(normal);
+    const auto u = static_cast<std::size_t>(across[0]), v = static_cast<std::size_t>(across[1]);
+    if (box.length(u) + box.length(v) == 2) return;
+    const int fixed = face & 1 ? box.high[static_cast<std::size_t>(normal)] : box.low[static_cast<std::size_t>(normal)];
+    const std::uint64_t below_high = (std::uint64_t{1} << box.high[u]) - 1;
+    const std::uint64_t along = below_high & ~std::uint64_t{0} << box.low[u], within = along & ~std::uint64_t{1} << box.low[u];
+    const auto place = [](const RimEdge& edge, std::size_t axis) { return 2 * edge.at[axis] + (static_cast<int>(axis) == edge.axis); };
+    const bool falls = place(to, v) < place(from, v), turns_back = place(to, u) < place(from, u);
+
+    const auto tell = [&](std::size_t axis, int bit, int n) {
+        RimEdge edge{static_cast<int>(axis), {}};
+        edge.at[static_cast<std::size_t>(normal)] = fixed;
+        edge.at[u] = bit;
+        edge.at[v] = n;
+        visit(edge);
+    };
+    const auto across_line = [&](int n) {
+        std::uint64_t left = site.kept_on_plane(normal, fixed, across[1], n) & within;
+        while (left) {
+            const int bit = turns_back ? 63 - std::countl_zero(left) : std::countr_zero(left);
+            left ^= std::uint64_t{1} << bit;
+            tell(v, bit, n);
+        }
+    };
+    const auto on_line = [&](int n) {
+        if (const std::uint64_t found = site.kept_on_plane(normal, fixed, across[0], n) & along) tell(u, std::countr_zero(found), n);
+    };
+    if (falls) {
+        for (int n = std::min<int>(from.at[v], box.high[v] - 1); n >= to.at[v]; --n) {
+            across_line(n);
+            if (n > box.low[v]) on_line(n);
+        }
+    } else {
+        for (int n = from.at[v]; n <= to.at[v] && n < box.high[v]; ++n) {
+            if (n > box.low[v]) on_line(n);
+            across_line(n);
         }
     }
+}
 
-  private:
-    // The same for a face of two cells, which has one edge within.
-    static void peek(const Site& site, const HighRice& box, int face, std::vector<RimEdge>& out) {
-        const auto across = cube::other_axes(face / 2);
-        const int axis = box.length(static_cast<std::size_t>(across[0])) == 1 ? across[0] : across[1];
-        Place at{box.low[0], box.low[1], box.low[2]};
-        ++at[static_cast<std::size_t>(across[0] + across[1] - axis)];
-        const auto normal = static_cast<std::size_t>(face / 2);
-        if (face & 1) at[normal] = box.high[normal];
-        if (site.kept(axis, at)) out.push_back({axis, at, 1u << face});
+// The loop of a disk box: calls visit(edge, faces of the box that the edge lies on) for every vertex on its surface, in
+// the order that turns its triangles outwards.
+template <class Visit>
+void walk_loop(const Site& site, const HighRice& box, const Rim& rim, const Visit& visit) {
+    std::array<RimEdge, 7> ends;
+    for (unsigned n = 0; n < rim.length; ++n) ends[n] = box_crossing(site, box, rim.edges[n]);
+    ends[rim.length] = ends[0];
+    for (unsigned n = 0; n < rim.length; ++n) {
+        visit(ends[n], unsigned{kFacesOfEdge[rim.edges[n]]});
+        walk_face(site, box, rim.faces[n], ends[n], ends[n + 1], [&](const RimEdge& edge) { visit(edge, 1u << rim.faces[n]); });
     }
+}
 
-    // Adds the kept edges strictly between two edges on the rim of a face.
-    static void walk(const Site& site, const HighRice& box, int face, const RimEdge& from, const RimEdge& to, std::vector<RimEdge>& out) {
-        const auto across = cube::other_axes(face / 2);
-        RimEdge here{from.axis, from.at, 1u << face};
-        int step = here.at[static_cast<std::size_t>(across[0] + across[1] - here.axis)] ==
-                           box.low[static_cast<std::size_t>(across[0] + across[1] - here.axis)]
-                       ? 1
-                       : -1;  // along the other axis of the face
-        while (true) {
-            const auto u = static_cast<std::size_t>(here.axis), v = static_cast<std::size_t>(across[0] + across[1] - here.axis);
-            const bool first = site.sign(here.at);
-            Place far = here.at;
-            far[v] += step;
-            const bool far_first = site.sign(far);
-            ++far[u];
-            const bool far_second = site.sign(far);
-            if (far_first != far_second) {
-                here.at[v] += step;
-            } else {
-                if (step < 0) --here.at[v];
-                step = far_first == first ? 1 : -1;
-                if (step > 0) ++here.at[u];
-                here.axis = static_cast<int>(v);
-            }
-            if (here.axis == to.axis && here.at == to.at) return;
-            if (site.kept(here.axis, here.at)) out.push_back(here);
-        }
-    }
-};
-
+}  // namespace padi
 }  // namespace isocore::climbing

@@ -9,6 +9,8 @@
 
 #include "climbing/cloud.hpp"
 #include "climbing/high_rice.hpp"
+#include "climbing/layout.hpp"
+#include "climbing/site.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -16,28 +18,36 @@ namespace isocore::climbing {
 // What the error bound needs to know of a block: where its crossings are.
 class Judge {
   public:
-    Judge(double bound, const std::array<double, 3>& stretch) : max_error(bound), scale(stretch) {}
+    Judge(double bound, const std::array<double, 3>& stretch)
+        : max_error(bound), scale{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])} {}
     virtual ~Judge() = default;
-    // Pushes all crossings of the closed block that starts at sample `origin`, in samples from there. Row (j, k) of the
-    // block's sign bits is rows[j + stride * k].
-    virtual void gather(const Dims& origin, const std::array<int, 3>& cells, const std::uint64_t* rows, int stride, Clouds& clouds) const = 0;
+    // Adds all crossings of the closed block: by row (j, k), axis, and i.
+    virtual void gather(const Site& site, Clouds& clouds) const = 0;
 
     const double max_error;
-    const std::array<double, 3> scale;
+    const Spot scale;  // from samples to the unit of the bound
 };
 
-// A block with samples on both sides; its highrices are the next `boxes` of its bar.
+// The highrices of one cell in a row of a block, a bit for each.
+struct CellRow {
+    std::uint8_t j, k;
+    std::uint32_t cells;
+};
+
+// A block with samples on both sides; the next `boxes` and `cell_rows` of its bar are its highrices.
 struct VisitedBlock {
-    std::uint32_t x, boxes;
+    std::uint32_t x, boxes, cell_rows;
 };
 
 // A row of blocks along the first axis: the unit of parallel work.
 struct BarBoxes {
     std::vector<VisitedBlock> blocks;
     std::vector<HighRice> boxes;
+    std::vector<CellRow> cell_rows;
 };
 
-// Finds the highrices of the bar (y, z). Without a judge every box is flat. The block size is 1, 2, 4, 8, 16 or 32.
-BarBoxes partition_bar(const SignGrid& signs, int block_size, std::size_t y, std::size_t z, const Judge* judge);
+// Finds the highrices of the bar (y, z) and keeps the crossings on their edges. Without a judge every box is flat. The
+// block size is 1, 2, 4, 8, 16 or 32.
+BarBoxes partition_bar(const SignGrid& signs, int block_size, std::size_t y, std::size_t z, const Judge* judge, Layout& layout);
 
 }  // namespace isocore::climbing

@@ -21,6 +21,8 @@ struct Corner {
 
 class Polygon {
   public:
+    using Triangle = std::array<std::size_t, 3>;  // numbers of corners
+
     std::vector<Corner> corners;
 
     // Calls draw(a, b, c), numbers of corners, for each of corners.size() - 2 triangles.
@@ -29,22 +31,16 @@ class Polygon {
         const std::size_t n = corners.size();
         if (n == 3) return draw(0, 1, 2);
         if (n == 4) return cut_four(draw);
-        cost_.assign(n * n, 0);
-        apex_.assign(n * n, 0);
+        if (cost_.size() < n * n) {
+            cost_.resize(n * n);
+            apex_.resize(n * n);
+        }
+        for (std::size_t i = 0; i + 1 < n; ++i) cost_[i * n + i + 1] = 0;
         for (std::size_t span = 2; span < n; ++span) {
             for (std::size_t i = 0; i + span < n; ++i) find_apex(i, i + span);
         }
         if (!std::isfinite(cost_[n - 1])) throw std::logic_error("a loop has no legal triangulation");
-        open_.assign(1, {0, n - 1});
-        while (!open_.empty()) {
-            const auto [i, j] = open_.back();
-            open_.pop_back();
-            if (j - i < 2) continue;
-            const std::size_t k = apex_[i * n + j];
-            draw(i, k, j);
-            open_.push_back({k, j});
-            open_.push_back({i, k});
-        }
+        draw_part(0, n - 1, draw);
     }
 
   private:
@@ -61,6 +57,16 @@ class Polygon {
             draw(0, 1, 3);
             draw(1, 2, 3);
         }
+    }
+
+    // The triangles between the corners i ... j and the line from i to j.
+    template <class Draw>
+    void draw_part(std::size_t i, std::size_t j, const Draw& draw) const {
+        if (j - i < 2) return;
+        const std::size_t k = apex_[i * corners.size() + j];
+        draw(i, k, j);
+        draw_part(i, k, draw);
+        draw_part(k, j, draw);
     }
 
     void find_apex(std::size_t i, std::size_t j) {
@@ -88,7 +94,6 @@ class Polygon {
 
     std::vector<double> cost_;
     std::vector<std::size_t> apex_;
-    std::vector<std::array<std::size_t, 2>> open_;
 };
 
 }  // namespace isocore::climbing

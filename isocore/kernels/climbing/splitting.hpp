@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "climbing/bars.hpp"
 #include "climbing/high_rice.hpp"
+#include "climbing/padi.hpp"
+#include "climbing/site.hpp"
 #include "common/array.hpp"
 
 namespace isocore::climbing {
@@ -46,23 +50,31 @@ inline void halve(const SignGrid& signs, const Dims& origin, const HighRice& box
 
 inline void split_bar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late) {
     std::vector<HighRice> boxes;
+    std::vector<CellRow> cell_rows;
     auto broken = bar.broken.begin();
-    std::size_t block = 0;
-    bars.visit(number, [&](const Dims& origin, const HighRice* box, const HighRice* end) {
-        const std::size_t before = boxes.size();
-        for (; box != end; ++box) {
-            if (broken != bar.broken.end() && bar.boxes.data() + *broken == box) {
-                const std::size_t first = boxes.size();
-                halve(signs, origin, *box, boxes);
-                for (std::size_t n = first; n < boxes.size(); ++n) late.push_back({origin, boxes[n]});
-                ++broken;
-            } else {
-                boxes.push_back(*box);
+    std::size_t block = 0, box = 0;
+    bars.visit(number, [&](const Dims& origin, std::span<const HighRice> old_boxes, std::span<const CellRow> old_rows) {
+        const std::size_t boxes_before = boxes.size(), rows_before = cell_rows.size();
+        cell_rows.insert(cell_rows.end(), old_rows.begin(), old_rows.end());
+        for (const HighRice& old : old_boxes) {
+            if (broken == bar.broken.end() || *broken != box++) {
+                boxes.push_back(old);
+                continue;
+            }
+            ++broken;
+            std::vector<HighRice> parts;
+            halve(signs, origin, old, parts);
+            for (const HighRice& part : parts) {
+                late.push_back({origin, part});
+                if (part.is_cell()) cell_rows.push_back({part.low[1], part.low[2], std::uint32_t{1} << part.low[0]});
+                else boxes.push_back(part);
             }
         }
-        bar.blocks[block++].boxes = static_cast<std::uint32_t>(boxes.size() - before);
+        bar.blocks[block].boxes = static_cast<std::uint32_t>(boxes.size() - boxes_before);
+        bar.blocks[block++].cell_rows = static_cast<std::uint32_t>(cell_rows.size() - rows_before);
     });
     bar.boxes = std::move(boxes);
+    bar.cell_rows = std::move(cell_rows);
     bar.split_again += bar.broken.size();
     bar.broken.clear();
 }
@@ -81,6 +93,26 @@ inline std::vector<LateBox> split_broken(const SignGrid& signs, Bars& bars) {
         }
     }
     return late;
+}
+
+// The numbers of the crossings that late boxes make vertices of, each with its row.
+struct LateVertex {
+    std::size_t crossing, j, k;
+};
+
+// Keeps the crossings on the edges of late boxes; returns those that were not kept before.
+inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vector<LateBox>& late, int block_size, Layout& layout) {
+    std::vector<LateVertex> out;
+    const auto site = std::make_unique<Site>(block_size);
+    for (const auto& [origin, box] : late) {
+        site->begin(signs, layout, origin[1], origin[2]);
+        for (std::size_t x = 0; x <= origin[0]; x += static_cast<std::size_t>(block_size)) site->load(x);
+        site->lay_columns();
+        keep_edges(*site, box, layout, [&](std::size_t crossing, const Place& at) {
+            out.push_back({crossing, origin[1] + static_cast<std::size_t>(at[1]), origin[2] + static_cast<std::size_t>(at[2])});
+        });
+    }
+    return out;
 }
 
 // The numbers that vertices had before a few were inserted among them, and have now.
