@@ -71,7 +71,7 @@ def convert(context: click.Context, **chosen: Any) -> None:
     start = perf_counter()
     jobs = planned_jobs(chosen)
     if chosen["dry_run"]:
-        from isocore.batch import plan_lines
+        from isocore.batches.run import plan_lines
 
         for line in plan_lines(jobs):
             click.echo(line)
@@ -106,10 +106,10 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
                 raise click.UsageError(f"-o -: does not go with --{option.removeprefix('as_')}; use -o FILE")
 
     from isocore.backends import BACKENDS, Options, check_options
+    from isocore.batches.plan import Naming, check_template, find_inputs, plan
     from isocore.errors import OptionError
     from isocore.isovalue import parse_choices
     from isocore.pipeline import Job
-    from isocore.plan import Naming, check_template, find_inputs, plan
     from isocore.report import renderer_for
 
     options = Options(

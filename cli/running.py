@@ -8,8 +8,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-from isocore.batch import Batch, run_jobs
-from isocore.depfile import depfile_text
+from isocore.batches.depfile import depfile_text
+from isocore.batches.run import Batch, run_jobs
 from isocore.memory import free_bytes
 from isocore.pipeline import Job
 from isocore.report import BatchReport, RunReport, github_annotations, save_report

@@ -54,7 +54,7 @@ class Job:
     space: of the outputs, "native" for the file's own.
     ambiguities: where the ambiguous faces go, for a job of one target.
     require: names out of compose.REQUIREMENTS; max_triangles: a further one.
-    if_changed: leave outputs alone that are up to date (stamps.py); force: not even those.
+    if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those.
     Both are the batch's business.
     """
 

@@ -16,10 +16,10 @@ from typing import Any
 import pytest
 from small_files import ball, write_nifti
 
-from isocore.batch import Batch, estimate, run_jobs
-from isocore.leftovers import remove_parts
+from isocore.batches.leftovers import remove_parts
+from isocore.batches.run import Batch, estimate, run_jobs
+from isocore.batches.stamps import stamp_path
 from isocore.pipeline import Job, Target
-from isocore.stamps import stamp_path
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "convert"]
 FAST = ("-i", "50", "-b", "mc", "-q")

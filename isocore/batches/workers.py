@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Any, BinaryIO, cast
 
-from isocore.leftovers import remove_parts
+from isocore.batches.leftovers import remove_parts
+from isocore.batches.worker import receive, send
 from isocore.pipeline import Job, failed
 from isocore.report.record import RunReport
-from isocore.worker import receive, send
 
 _END_SECONDS = 5.0
 
@@ -42,7 +42,7 @@ class Worker:
         self.bytes = 0
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # closed with the worker
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "isocore.worker"],
+            [sys.executable, "-P", "-m", "isocore.batches.worker"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,

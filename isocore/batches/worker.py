@@ -47,7 +47,7 @@ def main() -> None:
     jobs: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(jobs,), daemon=True).start()
 
-    from isocore.batch import guarded
+    from isocore.batches.run import guarded
 
     while True:
         job = jobs.get()

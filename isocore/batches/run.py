@@ -6,10 +6,11 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 
-from isocore import compose, stamps
-from isocore.dependencies import files_of
+from isocore import compose
+from isocore.batches import stamps
+from isocore.batches.dependencies import files_of
+from isocore.batches.leftovers import remove_parts
 from isocore.errors import one_line
-from isocore.leftovers import remove_parts
 from isocore.memory import estimated_bytes
 from isocore.pipeline import STDOUT, Job, Target, convert, failed
 from isocore.report.record import RunReport
@@ -50,11 +51,11 @@ def _runs(
     jobs: Sequence[Job], batch: Batch, at: Callable[[list[Job]], None]
 ) -> Generator[tuple[Job, RunReport], None, None]:
     if batch.scheduler is not None:
-        from isocore.cluster import run_on_cluster
+        from isocore.batches.cluster import run_on_cluster
 
         yield from run_on_cluster(jobs, batch.scheduler)
     elif batch.workers:
-        from isocore.workers import Limits, run_in_workers
+        from isocore.batches.workers import Limits, run_in_workers
 
         limits = Limits(batch.workers, batch.seconds_per_job, batch.memory_bytes)
         yield from run_in_workers(jobs, limits, estimate=estimate, at=at)

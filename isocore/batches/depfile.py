@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from isocore.dependencies import files_of
+from isocore.batches.dependencies import files_of
 from isocore.pipeline import STDOUT, Job
 
 

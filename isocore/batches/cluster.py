@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from isocore.batches.leftovers import remove_parts
 from isocore.errors import OptionError, one_line
-from isocore.leftovers import remove_parts
 from isocore.pipeline import Job, failed
 from isocore.report.record import RunReport
 
@@ -42,7 +42,7 @@ def run_on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, Run
 
 def convert_whole(job: Job) -> list[RunReport]:
     """All records of a job; runs on the cluster."""
-    from isocore.batch import guarded
+    from isocore.batches.run import guarded
 
     remove_parts(target.output for target in job.targets)
     return list(guarded(job))
