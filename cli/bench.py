@@ -10,7 +10,7 @@ import click
 from .options import PATH, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
-    from isocore.thinning_bench import Table
+    from isocore.benches.thinning import Table
     from isocore.volume import Volume
 
 
@@ -76,11 +76,11 @@ def bench(
 
 
 def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) -> list[Table]:
+    from isocore.benches.grid_thinning import grid_bench
+    from isocore.benches.thinning import mesh_bench
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
-    from isocore.grid_bench import grid_bench
     from isocore.readers import read
-    from isocore.thinning_bench import mesh_bench
 
     field = read(path, read_options(chosen))
     try:
@@ -94,8 +94,8 @@ def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) ->
 
 
 def _volume_table(volume: Volume, threads: int, chosen: dict[str, Any]) -> Table:
-    from isocore.climbing_bench import render_csv, render_markdown, volume_bench
-    from isocore.climbing_plot import render_svg
+    from isocore.benches.climbing import render_csv, render_markdown, volume_bench
+    from isocore.benches.climbing_plot import render_svg
     from isocore.histogram import histogram
     from isocore.isovalue import choose, parse_choices
     from isocore.whole_file import whole_file

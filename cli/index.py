@@ -37,9 +37,9 @@ def _index(path: Path, chosen: dict[str, Any]) -> str:
     """Writes the index of one mesh and says what it holds."""
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
-    from isocore.index_file import index_path, save_index
+    from isocore.methods.index_file import index_path, save_index
+    from isocore.methods.thinning import build_index
     from isocore.readers import read
-    from isocore.thinning import build_index
 
     mesh = read(path, read_options(chosen))
     if not isinstance(mesh, CellMesh):

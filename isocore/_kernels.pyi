@@ -81,7 +81,7 @@ def histogram(
     samples: npt.NDArray[Any], low: float, high: float, bins: int, threads: int
 ) -> npt.NDArray[np.uint64]: ...
 
-# thinning: records (m, 14) or (m, 26), skeleton (s,), low and high (s,); then as isocore.mesh_index.IndexPart
+# thinning: records (m, 14) or (m, 26), skeleton (s,), low and high (s,); then as isocore.methods.mesh_index.IndexPart
 _Part = tuple[
     _Int32, _Int32, _Float64, _Float64, int, tuple[int, ...], int, tuple[int, int, int], int, int
 ]

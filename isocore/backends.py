@@ -13,13 +13,13 @@ from typing import Any
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.climbing import bound_for, check_block_size, climbing_facts
 from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Options
-from isocore.grid_thinning import GridWalker
-from isocore.marching_cells import prepare_marching_cells
+from isocore.methods.climbing import bound_for, check_block_size, climbing_facts
+from isocore.methods.grid_thinning import GridWalker
+from isocore.methods.marching_cells import prepare_marching_cells
+from isocore.methods.thinning import prepare_thinning
 from isocore.surface import Surface, place_fresh
-from isocore.thinning import prepare_thinning
 from isocore.volume import Volume
 
 Field = Volume | CellMesh

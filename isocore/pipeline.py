@@ -16,10 +16,10 @@ from isocore.ambiguities import find_ambiguities, write_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Options, default_backend, prepare
 from isocore.errors import FieldError, IsocoreError, OptionError, writing
 from isocore.histogram import histogram
-from isocore.index_file import index_path
 from isocore.isovalue import choose
 from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
+from isocore.methods.index_file import index_path
 from isocore.readers import read
 from isocore.readers.options import ReadOptions
 from isocore.report.record import RunReport

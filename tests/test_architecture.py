@@ -17,19 +17,22 @@ SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folde
 
 NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measurements"}
 KERNELS = {"_kernels", "_kernels_base", "_kernels_v3"}
-FIELD_ROOMS = {"histogram", "isovalue", "extrema", "cell_splitting"}
+FIELD_ROOMS = {"histogram", "isovalue", "extrema"}
 #: Rooms that only the command line uses.
-FOR_THE_CLI = {"batches", "describe", "cli"}
+FOR_THE_CLI = {"batches", "benches", "describe", "cli"}
 ABOVE_BACKENDS = FOR_THE_CLI | {"pipeline", "compose", "readers", "writers", "report"}
 
 #: room -> rooms it may import. A room is the first part of a module's name below isocore.
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     **dict.fromkeys(("volume", "cell_mesh", "surface", "extraction", "measurements"), NOUNS | KERNELS),
-    "readers": NOUNS | KERNELS | {"cell_splitting"},
+    "readers": NOUNS | KERNELS,
     "writers": {"surface", "errors", "whole_file"} | KERNELS,
     "whole_file": {"errors"},
     "report": {"surface", "errors", "whole_file"} | KERNELS,
+    "methods": NOUNS | KERNELS | {"whole_file"},
+    "backends": NOUNS | KERNELS | {"methods"},
+    "benches": NOUNS | KERNELS | {"methods"},
     **dict.fromkeys(FIELD_ROOMS, NOUNS | KERNELS | FIELD_ROOMS),
 }
 

@@ -12,7 +12,7 @@ from cell_shapes import HEX, PYRAMID, WEDGE, block, of_kind, volume_of_tets
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from isocore.cell_splitting import QUADS, SplitCells, repeats_a_corner, split_cells
+from isocore.readers.cell_splitting import QUADS, SplitCells, repeats_a_corner, split_cells
 
 NO_TETS = np.empty((0, 4), np.int32)
 

@@ -12,8 +12,8 @@ import pytest
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError
 from isocore.extraction import Options
-from isocore.index_file import index_path, load_index, save_index
-from isocore.thinning import Walker, build_index, prepare_thinning
+from isocore.methods.index_file import index_path, load_index, save_index
+from isocore.methods.thinning import Walker, build_index, prepare_thinning
 
 
 @pytest.fixture

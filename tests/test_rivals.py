@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from isocore.rivals import RIVALS, Cells, Rival
-from isocore.thinning import Walker, build_index
-from isocore.thinning_bench import cells_of, extrema_graph, mesh_bench
+from isocore.benches.rivals import RIVALS, Cells, Rival
+from isocore.benches.thinning import cells_of, extrema_graph, mesh_bench
+from isocore.methods.thinning import Walker, build_index
 
 EACH = pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
 

@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.cell_mesh import CellMesh
-from isocore.cell_splitting import split_cells
 from isocore.errors import FieldError, InputError, reading
+from isocore.readers.cell_splitting import split_cells
 from isocore.readers.vtu_cells import CORNERS, FLAT, SOLID, Corners, Shape, corners, count_cells
 from isocore.readers.vtu_fields import FieldChoice, FieldInfo, averaged, choose, component_of, scalar
 from isocore.readers.vtu_layout import UnusualLayout, scan

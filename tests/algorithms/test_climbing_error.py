@@ -11,8 +11,8 @@ from shapes import padded_shapes
 
 from isocore import _kernels
 from isocore.backends import Options, prepare
-from isocore.climbing import bound_for, check_block_size, parse_max_error
 from isocore.errors import OptionError
+from isocore.methods.climbing import bound_for, check_block_size, parse_max_error
 from isocore.volume import Volume
 
 Points = npt.NDArray[np.float64]

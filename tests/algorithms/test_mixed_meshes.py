@@ -8,8 +8,8 @@ from cell_shapes import HEX, PYRAMID, TET, WEDGE, block, of_kind
 
 from isocore.backends import BACKENDS, Options, prepare
 from isocore.cell_mesh import CellMesh
-from isocore.cell_splitting import split_cells
 from isocore.measurements import measure
+from isocore.readers.cell_splitting import split_cells
 
 MESH_BACKENDS = [name for name, backend in BACKENDS.items() if CellMesh in backend.accepts]
 

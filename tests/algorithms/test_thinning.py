@@ -11,7 +11,7 @@ from mesh_oracles import Glued, triangle_set
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.extraction import Options
-from isocore.thinning import Walker, build_index, prepare_thinning
+from isocore.methods.thinning import Walker, build_index, prepare_thinning
 
 KINDS = pytest.mark.parametrize("hexes", [False, True], ids=["tets", "hexes"])
 EACH_BODY = pytest.mark.parametrize("body", meshes.BODIES)

@@ -29,8 +29,8 @@ from mesh_oracles import triangle_set
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.cell_splitting import split_cells
-from isocore.thinning import Walker, build_index
+from isocore.methods.thinning import Walker, build_index
+from isocore.readers.cell_splitting import split_cells
 
 REAL = Path(__file__).parents[3] / "shared" / "data" / "meshes"
 

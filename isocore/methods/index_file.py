@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, reading
-from isocore.mesh_index import IndexPart, MeshIndex
+from isocore.methods.mesh_index import IndexPart, MeshIndex
 
 SUFFIX = ".isoindex"
 _MAGIC = b"isocore thinning index 2\n"

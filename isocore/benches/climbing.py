@@ -12,9 +12,9 @@ from statistics import median
 from time import perf_counter
 
 from isocore import _kernels
-from isocore.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, bound_for
+from isocore.benches.thinning import Table
 from isocore.errors import FieldError
-from isocore.thinning_bench import Table
+from isocore.methods.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, bound_for
 from isocore.volume import Volume
 
 MAX_ERRORS = ("none", "1", "0.5", "0.25", "0.1")

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
+from isocore.benches.rivals import RIVALS, Cells
 from isocore.cell_mesh import CellMesh
 from isocore.errors import FieldError
-from isocore.mesh_index import IndexPart, MeshIndex
-from isocore.rivals import RIVALS, Cells
-from isocore.thinning import Walker, build_index
+from isocore.methods.mesh_index import IndexPart, MeshIndex
+from isocore.methods.thinning import Walker, build_index
 
 T = TypeVar("T")
 

@@ -17,9 +17,9 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import IsocoreError
 from isocore.extraction import Extract, Extraction, Options
-from isocore.index_file import load_index
-from isocore.marching_cells import mesh_surface, mesh_warnings, single_precision
-from isocore.mesh_index import IndexPart, MeshIndex
+from isocore.methods.index_file import load_index
+from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
+from isocore.methods.mesh_index import IndexPart, MeshIndex
 
 #: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
 Walked: TypeAlias = tuple[npt.NDArray[Any], npt.NDArray[np.int32], int, int]

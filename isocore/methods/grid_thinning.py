@@ -1,6 +1,6 @@
 """Volume thinning where the cells are those of a voxel volume: hexahedra that need no adjacency.
 
-Follows Itoh, Yamaguchi, Koyamada, IEEE TVCG 7(1), 2001, as isocore/thinning.py does for meshes.
+Follows Itoh, Yamaguchi, Koyamada, IEEE TVCG 7(1), 2001, as isocore/methods/thinning.py does for meshes.
 """
 
 from __future__ import annotations

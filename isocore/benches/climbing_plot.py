@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import ceil, floor, log10
 
-from isocore.climbing_bench import ClimbingBench
+from isocore.benches.climbing import ClimbingBench
 
 _WIDTH, _HEIGHT, _LEFT, _TOP, _GAP = 360, 240, 64, 40, 80
 _OURS, _THEIRS, _LINES = "#1f6fb2", "#888888", "#dddddd"

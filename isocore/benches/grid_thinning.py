@@ -8,10 +8,10 @@ from time import perf_counter
 import numpy as np
 import numpy.typing as npt
 
+from isocore.benches.rivals import RIVALS, Cells
+from isocore.benches.thinning import Table
 from isocore.errors import FieldError
-from isocore.grid_thinning import GridWalker
-from isocore.rivals import RIVALS, Cells
-from isocore.thinning_bench import Table
+from isocore.methods.grid_thinning import GridWalker
 from isocore.volume import Volume
 
 _COLUMNS = ("method", "registered", "visited", "intersected", "visited / intersected", "build s", "search s")

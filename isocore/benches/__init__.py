@@ -1,0 +1,1 @@
+"""The papers' tables on the user's own data: what `isocore bench` prints."""
