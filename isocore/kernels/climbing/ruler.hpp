@@ -26,22 +26,23 @@ class Ruler {
         const auto& s = options.spacing;
         even_ = s[0] == s[1] && s[1] == s[2];
         const auto samples_in_face = static_cast<std::size_t>((options.block_size + 1) * (options.block_size + 1));
-        for (auto& axis : places_) axis.resize(3 * samples_in_face + Points::kAtOnce);  // no lign of a box is crossed twice
+        for (auto& axis : places_) axis.resize(3 * samples_in_face + kLanes<float>);  // no lign of a box is crossed twice
     }
 
     // Adds a box's deviations to those of its bar. False if one breaks the bound.
     bool measure(const Site& site, const HighRice& box, const Polygon& polygon, const std::vector<Polygon::Triangle>& triangles, Bar& bar) {
+        // Relative to a vertex of the box, so that floats are fine.
+        const Corner& near = polygon.corners.front();
         count_ = 0;
-        gather(site, box);
+        gather(site, box, near.place);
         if (count_ == 0) return true;
-        for (auto& axis : places_) std::fill_n(axis.begin() + static_cast<std::ptrdiff_t>(count_), Points::kAtOnce, axis[0]);
-        const Point origin{static_cast<double>(site.origin[0]), static_cast<double>(site.origin[1]), static_cast<double>(site.origin[2])};
-        Deviation in_voxels = measure(origin, {1, 1, 1}, polygon, triangles), in_world;
+        for (auto& axis : places_) std::fill_n(axis.begin() + static_cast<std::ptrdiff_t>(count_), kLanes<float>, axis[0]);
+        Deviation in_voxels = measure({1, 1, 1}, near.place, polygon, triangles), in_world;
         if (even_) {
             const double spacing = options_.spacing[0];
             in_world = {in_voxels.max * spacing, in_voxels.sum * spacing, in_voxels.squares * spacing * spacing};
         } else {
-            in_world = measure(origin, options_.spacing, polygon, triangles);
+            in_world = measure(options_.spacing, near.place, polygon, triangles);
         }
         add(bar.in_voxels, in_voxels);
         add(bar.in_world, in_world);
@@ -50,7 +51,7 @@ class Ruler {
 
   private:
     // Notes the crossings that are not kept; those in a high face of the box are left to the box beyond.
-    void gather(const Site& site, const HighRice& box) {
+    void gather(const Site& site, const HighRice& box, const Point& origin) {
         Place last;
         for (std::size_t a = 0; a < 3; ++a) last[a] = box.high[a] - (box.high[a] == site.cells[a] && site.ends_grid[a] ? 0 : 1);
         const std::uint64_t from = ~std::uint64_t{0} << box.low[0];
@@ -62,45 +63,62 @@ class Ruler {
                                                k < box.high[2] ? row.crossed[2] & ~row.kept[2] & across : 0};
                 if ((left[0] | left[1] | left[2]) == 0) continue;
                 for (int axis = 0; axis < 3; ++axis) {
-                    for (std::uint64_t bits = left[axis]; bits; bits &= bits - 1) place(site, axis, {std::countr_zero(bits), j, k});
+                    for (std::uint64_t bits = left[axis]; bits; bits &= bits - 1) place(site, axis, {std::countr_zero(bits), j, k}, origin);
                 }
             }
         }
     }
 
-    // Notes marching cubes' vertex, in samples from the block's origin, where numbers are small.
-    void place(const Site& site, int axis, const Place& at) {
+    // Notes marching cubes' vertex.
+    void place(const Site& site, int axis, const Place& at, const Point& origin) {
         const auto whole = [&](std::size_t a) { return site.origin[a] + static_cast<std::size_t>(at[a]); };
-        const auto along = static_cast<std::size_t>(axis);
-        for (std::size_t a = 0; a < 3; ++a) places_[a][count_] = at[a] - static_cast<double>(signs_.pad);
-        const double pad = static_cast<double>(signs_.pad);
-        const double found = static_cast<double>(whole(along)) + edge_crossing(samples_, signs_, options_.isovalue, axis, whole(0), whole(1), whole(2)) - pad;
-        places_[along][count_++] = static_cast<double>(static_cast<Coordinate>(found)) - static_cast<double>(site.origin[along]);
+        const double crossing = edge_crossing(samples_, signs_, options_.isovalue, axis, whole(0), whole(1), whole(2));
+        for (std::size_t a = 0; a < 3; ++a) {
+            double place = static_cast<double>(whole(a)) - static_cast<double>(signs_.pad);
+            if (static_cast<int>(a) == axis) place = static_cast<double>(static_cast<Coordinate>(place + crossing));
+            places_[a][count_] = static_cast<float>(place - origin[a]);
+        }
+        ++count_;
     }
 
     // The deviations of the noted places, stretched by `scale`.
-    Deviation measure(const Point& origin, const Point& scale, const Polygon& polygon, const std::vector<Polygon::Triangle>& triangles) {
-        const auto stretch = [&](const Point& p) { return Point{(p[0] - origin[0]) * scale[0], (p[1] - origin[1]) * scale[1], (p[2] - origin[2]) * scale[2]}; };
+    Deviation measure(const Point& scale, const Point& origin, const Polygon& polygon, const std::vector<Polygon::Triangle>& triangles) {
+        const auto corner = [&](std::size_t n) {
+            Facets::Spot out;
+            for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>((polygon.corners[n].place[a] - origin[a]) * scale[a]);
+            return out;
+        };
         facets_.clear();
-        for (const auto& [a, b, c] : triangles) {
-            facets_.emplace_back(stretch(polygon.corners[a].place), stretch(polygon.corners[b].place), stretch(polygon.corners[c].place));
+        for (const auto& [a, b, c] : triangles) facets_.add(corner(a), corner(b), corner(c));
+        facets_.prepare();
+        Facets::Numbers largest(0.0f), sum(0.0f), squares(0.0f);
+        for (std::size_t n = 0; n < count_; n += kLanes<float>) {
+            const auto axis = [&](std::size_t a) { return Facets::Numbers(places_[a].data() + n) * static_cast<float>(scale[a]); };
+            const auto used = Facets::Numbers(kLaneNumbers.data()) < static_cast<float>(count_ - n);
+            const Facets::Numbers found = choose(used, facets_.squared_distances({axis(0), axis(1), axis(2)}), 0.0f);
+            largest = greatest(largest, found);
+            squares = squares + found;
+            sum = sum + root(found);
         }
         Deviation out;
-        for (std::size_t n = 0; n < count_; n += Points::kAtOnce) {
-            const auto axis = [&](std::size_t a) { return Points::Numbers(places_[a].data() + n) * scale[a]; };
-            const auto squares = squared_distances(facets_, {axis(0), axis(1), axis(2)}).each();
-            for (std::size_t m = 0; m < Points::kAtOnce && n + m < count_; ++m) add(out, std::sqrt(squares[m]));
+        for (std::size_t lane = 0; lane < kLanes<float>; ++lane) {
+            out.max = std::max(out.max, static_cast<double>(largest.each()[lane]));
+            out.sum += static_cast<double>(sum.each()[lane]);
+            out.squares += static_cast<double>(squares.each()[lane]);
         }
+        out.max = std::sqrt(out.max);
         return out;
     }
+
+    static constexpr std::array<float, kLanes<float>> kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7};
 
     const GridView<Sample>& samples_;
     const SignGrid& signs_;
     const Options& options_;
     bool even_;
-    std::array<Array<double>, 3> places_;
+    std::array<Array<float>, 3> places_;
     std::size_t count_ = 0;
-    std::vector<Facet> facets_;
+    Facets facets_;
 };
 
 }  // namespace isocore::climbing

@@ -1,8 +1,9 @@
-// lanes.hpp - A few floating-point numbers at once: eight floats or four doubles. Every operation is that of its numbers
+// lanes.hpp - Eight floating-point numbers at once. Every operation is that of its numbers
 // one by one, so results are the same bits with and without wide registers.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -40,6 +41,8 @@ struct LaneRegister<float> {
     static Type add(Type a, Type b) { return _mm256_add_ps(a, b); }
     static Type subtract(Type a, Type b) { return _mm256_sub_ps(a, b); }
     static Type multiply(Type a, Type b) { return _mm256_mul_ps(a, b); }
+    static Type divide(Type a, Type b) { return _mm256_div_ps(a, b); }
+    static Type root(Type a) { return _mm256_sqrt_ps(a); }
     static Type less(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
     static Type not_above(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static Type equal(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
@@ -52,23 +55,6 @@ struct LaneRegister<float> {
         _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, order));
     }
 };
-template <>
-struct LaneRegister<double> {
-    using Type = __m256d;
-    static Type load(const double* from) { return _mm256_loadu_pd(from); }
-    static Type all(double value) { return _mm256_set1_pd(value); }
-    static void store(double* to, Type a) { _mm256_storeu_pd(to, a); }
-    static Type add(Type a, Type b) { return _mm256_add_pd(a, b); }
-    static Type subtract(Type a, Type b) { return _mm256_sub_pd(a, b); }
-    static Type multiply(Type a, Type b) { return _mm256_mul_pd(a, b); }
-    static Type less(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-    static Type not_above(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-    static Type equal(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
-    static Type both(Type a, Type b) { return _mm256_and_pd(a, b); }
-    static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_pd(b, a, mask); }
-    static bool any(Type mask) { return _mm256_movemask_pd(mask) != 0; }
-};
-
 #else
 
 // A mask is 1 in its true lanes and 0 in the others.
@@ -87,6 +73,8 @@ struct LaneRegister {
     static Type add(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] + b[n]; }); }
     static Type subtract(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] - b[n]; }); }
     static Type multiply(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
+    static Type divide(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] / b[n]; }); }
+    static Type root(const Type& a) { return each([&](std::size_t n) { return std::sqrt(a[n]); }); }
     static Type less(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] < b[n]); }); }
     static Type not_above(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] <= b[n]); }); }
     static Type equal(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] == b[n]); }); }
@@ -129,6 +117,7 @@ struct Lanes {
     Lanes(T value) : lanes(Register::all(value)) {}
     explicit Lanes(typename Register::Type given) : lanes(given) {}
     explicit Lanes(const T* from) : lanes(Register::load(from)) {}
+    void store(T* to) const { Register::store(to, lanes); }
     std::array<T, kLanes<T>> each() const {
         std::array<T, kLanes<T>> out;
         Register::store(out.data(), lanes);
@@ -141,6 +130,8 @@ struct Lanes {
     friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(Register::add(a.lanes, b.lanes)); }
     friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(Register::subtract(a.lanes, b.lanes)); }
     friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(Register::multiply(a.lanes, b.lanes)); }
+    friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(Register::divide(a.lanes, b.lanes)); }
+    friend Lanes root(const Lanes& a) { return Lanes(Register::root(a.lanes)); }
     friend LaneMask<T> operator<(const Lanes& a, const Lanes& b) { return {Register::less(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator<=(const Lanes& a, const Lanes& b) { return {Register::not_above(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator==(const Lanes& a, const Lanes& b) { return {Register::equal(a.lanes, b.lanes)}; }
