@@ -37,7 +37,11 @@ def climb(
     in_world: bool = False,
     spacing: tuple[float, float, float] = ...,
     measured: bool = True,
+    ranges: npt.NDArray[Any] | None = None,
 ) -> tuple[_Real, _Int32, dict[str, Any]]: ...
+
+# sample_ranges: the lowest and highest sample of blocks of 64 x 16 x 16, by turns, for climb's `ranges`
+def sample_ranges(samples: _Samples, threads: int = 1) -> npt.NDArray[Any]: ...
 
 # ambiguities: (places (n, 3) in index space, saddle distances (n,))
 def ambiguities(

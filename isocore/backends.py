@@ -65,6 +65,8 @@ def _prepare_marching_cubes(field: Field, options: Options) -> Extract:
 def _prepare_climbing(volume: Volume, options: Options) -> Extract:
     block_size = check_block_size(options.block_size)
     bound = bound_for(volume, options.max_error)
+    # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
+    ranges = _kernels.sample_ranges(volume.samples, options.threads) if options.isovalues > 1 else None
 
     def extract(isovalue: float) -> Extraction:
         vertices, triangles, facts = _kernels.climb(
@@ -77,6 +79,7 @@ def _prepare_climbing(volume: Volume, options: Options) -> Extract:
             bound.distance,
             bound.in_world,
             volume.spacing,
+            ranges=ranges,
         )
         surface = placed_surface(volume, vertices, triangles, options)
         return Extraction(surface, climbing_facts(facts, bound, volume.unit))

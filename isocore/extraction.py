@@ -17,7 +17,8 @@ class Options:
     threads: at least 1. Results do not depend on it.
     cap: close the surface at the volume's border.
     normals: compute vertex normals.
-    isovalues: how many will be asked for, 0 where that is not known; decides nothing but advice.
+    isovalues: how many will be asked for, 0 where that is not known; decides advice and what is worth preparing, not
+        results.
     index: the thinning index of a mesh, used where it matches.
     topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
         trilinear function does.

@@ -104,19 +104,6 @@ inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& b
     bars.triangles_at_most = next;
 }
 
-// Closes the gaps that the bound left between the bars' triangles.
-inline void close_gaps(const Bars& bars, Array<std::int32_t>& triangles) {
-    std::size_t end = 0;
-    for (const Bar& bar : bars.bars) {
-        if (bar.first_triangle != end) {
-            const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * bar.first_triangle);
-            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * bar.triangles), triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
-        }
-        end += bar.triangles;
-    }
-    triangles.resize(3 * end);
-}
-
 inline Facts sum_facts(const Bars& bars) {
     Facts facts;
     facts.blocks = bars.blocks[0] * bars.blocks[1] * bars.blocks[2];

@@ -14,7 +14,9 @@
 #include "climbing/partition.hpp"
 #include "climbing/splitting.hpp"
 #include "common/edge_vertices.hpp"
+#include "common/gaps.hpp"
 #include "common/parallel.hpp"
+#include "common/sample_types.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -55,10 +57,10 @@ class Gatherer final : public Judge {
 template <class Sample, class Coordinate>
 class Climb {
   public:
-    Climb(const GridView<Sample>& samples, const Options& options)
+    Climb(const GridView<Sample>& samples, const Options& options, const Sample* ranges)
         : samples_(samples),
           options_(options),
-          signs_(classify(samples, options.isovalue, options.below, options.capped, options.threads)),
+          signs_(classify(samples, options.isovalue, options.below, options.capped, options.threads, ranges)),
           bars_(lay_out_bars(signs_, options.block_size)),
           layout_(signs_, options.threads) {}
 
@@ -73,6 +75,7 @@ class Climb {
 
     void number_and_place_vertices() {
         const std::size_t rows = signs_.dims[1], planes = signs_.dims[2];
+        mesh_.vertices = {};  // all are written anew: never room for old and new ones at once
         mesh_.vertices.resize(3 * layout_.number(options_.threads));
         parallel_for(options_.threads, planes, [&](std::size_t k) {
             for (std::size_t j = 0; j < rows; ++j) {
@@ -92,6 +95,7 @@ class Climb {
     // Draws the bars that are stale, which are all of them at first.
     void draw() {
         bound_triangles(signs_, layout_, bars_);
+        mesh_.triangles.reserve(3 * (bars_.triangles_at_most + bars_.triangles_at_most / kLateShare));
         mesh_.triangles.resize(3 * bars_.triangles_at_most);
         draw_stale();
     }
@@ -121,13 +125,16 @@ class Climb {
     }
 
     Mesh<Coordinate> take() {
-        close_gaps(bars_, mesh_.triangles);
+        close_gaps(bars_.bars, mesh_.triangles);
         mesh_.facts = sum_facts(bars_);
         mesh_.facts.crossings = layout_.crossings();
         return std::move(mesh_);
     }
 
   private:
+    // Room is left for so large a share of triangles that late halvings may add: growing would need room twice.
+    static constexpr std::size_t kLateShare = 16;
+
     template <class Work>
     void for_bars(const Work& work) {
         parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) { work(n, bars_.bars[n]); });
@@ -153,11 +160,11 @@ class Climb {
 }  // namespace
 
 template <class Sample, class Coordinate>
-Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options) {
+Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges) {
     if (*std::min_element(samples.dims.begin(), samples.dims.end()) < 2) {
         throw std::invalid_argument("climbing needs two samples per axis");
     }
-    Climb<Sample, Coordinate> work(samples, options);
+    Climb<Sample, Coordinate> work(samples, options, ranges);
     work.partition();
     work.number_and_place_vertices();
     work.draw();
@@ -166,17 +173,10 @@ Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options) {
     return work.take();
 }
 
-#define ISOCORE_INSTANTIATE(Sample)                                              \
-    template Mesh<float> climb<Sample, float>(GridView<Sample>, const Options&); \
-    template Mesh<double> climb<Sample, double>(GridView<Sample>, const Options&);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+#define ISOCORE_INSTANTIATE(Sample)                                                             \
+    template Mesh<float> climb<Sample, float>(GridView<Sample>, const Options&, const Sample*); \
+    template Mesh<double> climb<Sample, double>(GridView<Sample>, const Options&, const Sample*);
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore::climbing

@@ -51,8 +51,9 @@ struct Mesh {
     Facts facts;
 };
 
-// Instantiated for the eight sample types of volume.py, and for float and double coordinates.
+// Instantiated for the eight sample types of volume.py, and for float and double coordinates. ranges: what
+// sample_ranges() gave, or null; with it, blocks that the isovalue does not cross are not read.
 template <class Sample, class Coordinate>
-Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options);
+Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges = nullptr);
 
 }  // namespace isocore::climbing

@@ -28,9 +28,10 @@ struct SignGrid {
     }
 };
 
-// Instantiated in signs.cpp for the eight sample types. `below`: inside is sample <= isovalue.
+// Instantiated in signs.cpp for the eight sample types. `below`: inside is sample <= isovalue. With the `ranges` that
+// sample_ranges() gave, the samples of blocks that lie on one side are not read.
 template <class Sample>
-SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads);
+SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges = nullptr);
 
 // The row moved by one sample towards 0, so that bit i tells of sample i + 1.
 inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w, std::size_t words) {

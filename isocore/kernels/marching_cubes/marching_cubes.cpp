@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/edge_vertices.hpp"
+#include "common/gaps.hpp"
 #include "common/parallel.hpp"
 #include "common/sample_types.hpp"
 #include "common/signs.hpp"
@@ -41,19 +42,6 @@ std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t 
         work += layers[k].vertices + layers[k].triangles + 64;
     }
     return slabs;
-}
-
-// Closes the gaps that the bound left between the slabs' triangles.
-void close_gaps(const std::vector<Slab>& slabs, Array<std::int32_t>& triangles) {
-    std::size_t end = 0;
-    for (const Slab& slab : slabs) {
-        if (slab.first_triangle != end) {
-            const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * slab.first_triangle);
-            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * slab.triangles), triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
-        }
-        end += slab.triangles;
-    }
-    triangles.resize(3 * end);
 }
 
 template <bool tubes, class Sample, class Coordinate>

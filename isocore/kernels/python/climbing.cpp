@@ -1,13 +1,16 @@
-// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing,
-// measured), once per sample type.
+// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured,
+// ranges) and sample_ranges(samples, threads), once per sample type.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "climbing/climb.hpp"
+#include "common/sample_ranges.hpp"
 #include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -37,11 +40,11 @@ nb::dict facts_dict(const climbing::Facts& facts) {
 }
 
 template <class Sample, class Coordinate>
-nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& options) {
+nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& options, const Sample* ranges) {
     climbing::Mesh<Coordinate> mesh;
     {
         const nb::gil_scoped_release unlocked;
-        mesh = climbing::climb<Sample, Coordinate>(grid_view(samples), options);
+        mesh = climbing::climb<Sample, Coordinate>(grid_view(samples), options, ranges);
     }
     return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), facts_dict(mesh.facts));
 }
@@ -51,14 +54,28 @@ void bind(nb::module_& module) {
     module.def(
         "climb",
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size, double max_error,
-           bool in_world, std::array<double, 3> spacing, bool measured) {
+           bool in_world, std::array<double, 3> spacing, bool measured, std::optional<Vector<Sample>> ranges) {
             const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured};
             const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
-            return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
+            if (ranges && ranges->size() != range_count(grid_view(samples).dims)) throw nb::value_error("ranges of another volume");
+            const Sample* given = ranges ? ranges->data() : nullptr;
+            return longest <= kLongestForFloat ? run<Sample, float>(samples, options, given) : run<Sample, double>(samples, options, given);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
         nb::arg("block_size") = 16, nb::arg("max_error") = std::numeric_limits<double>::infinity(),
-        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1}, nb::arg("measured") = true);
+        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1}, nb::arg("measured") = true,
+        nb::arg("ranges").noconvert() = nb::none());
+    module.def(
+        "sample_ranges",
+        [](VolumeArray<Sample> samples, int threads) {
+            Array<Sample> ranges;
+            {
+                const nb::gil_scoped_release unlocked;
+                ranges = sample_ranges(grid_view(samples), threads);
+            }
+            return to_numpy(std::move(ranges));
+        },
+        nb::arg("samples").noconvert(), nb::arg("threads") = 1);
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// gaps.hpp - Tasks write their triangles where at most so many fit; afterwards the gaps between them are closed.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/array.hpp"
+
+namespace isocore {
+
+// runs: in order, each with its `first_triangle` and how many `triangles` it has.
+template <class Runs>
+void close_gaps(const Runs& runs, Array<std::int32_t>& triangles) {
+    std::size_t end = 0;
+    for (const auto& run : runs) {
+        if (run.first_triangle != end) {
+            const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * run.first_triangle);
+            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * run.triangles), triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
+        }
+        end += run.triangles;
+    }
+    triangles.resize(3 * end);
+}
+
+}  // namespace isocore
