@@ -1,8 +1,8 @@
 """The table of backends: how a field becomes a surface.
 
 A backend is a row. ``prepare(field, options)`` is where a method pays once per field and returns
-``extract(isovalue)``, where it pays per isovalue. To add one: a kernel folder with a glossary, its bindings, one row
-below; the contract tests find it by themselves.
+``extract(isovalue)``, where it pays per isovalue. To add one: a kernel folder with a glossary, its bindings, a file in
+methods/, one row below; the contract tests find it by themselves.
 """
 
 from __future__ import annotations
@@ -14,16 +14,12 @@ from typing import Any
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Options
+from isocore.extraction import Extract, Extraction, Field, Options
 from isocore.methods.climbing import bound_for, check_block_size, climbing_facts
-from isocore.methods.grid_thinning import GridWalker
-from isocore.methods.marching_cells import prepare_marching_cells
+from isocore.methods.marching_cubes import placed_surface, prepare_marching_cubes
 from isocore.methods.thinning import prepare_thinning
-from isocore.surface import Surface, place_fresh
+from isocore.surface import Surface
 from isocore.volume import Volume
-
-Field = Volume | CellMesh
-TOPOLOGIES = ("faces", "trilinear")
 
 __all__ = ["BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"]
 
@@ -38,28 +34,6 @@ class Backend:
     prepare: Callable[[Any, Options], Extract]
     options: frozenset[str] = frozenset()
     cites: str = ""
-
-
-def _prepare_marching_cubes(field: Field, options: Options) -> Extract:
-    trilinear = options.topology == "trilinear"
-    if options.topology not in (None, *TOPOLOGIES):
-        raise OptionError(f"--topology {options.topology}: must be {' or '.join(TOPOLOGIES)}")
-    if isinstance(field, CellMesh):
-        if trilinear:
-            raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
-        return prepare_marching_cells(field, options)
-    volume = field
-
-    def extract(isovalue: float) -> Extraction:
-        stored = volume.stored_isovalue(isovalue)
-        vertices, triangles, faces, cells, tubes = _kernels.marching_cubes(
-            volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
-        )
-        surface = placed_surface(volume, vertices, triangles, options)
-        ambiguous = {"faces": faces, "cells": cells} | ({"tubes": tubes} if trilinear else {})
-        return Extraction(surface, {"ambiguous": ambiguous})
-
-    return extract
 
 
 def _prepare_climbing(volume: Volume, options: Options) -> Extract:
@@ -87,30 +61,6 @@ def _prepare_climbing(volume: Volume, options: Options) -> Extract:
     return extract
 
 
-def _prepare_thinning(field: Field, options: Options) -> Extract:
-    if isinstance(field, CellMesh):
-        return prepare_thinning(field, options)
-    volume, walker = field, GridWalker(field, capped=options.cap)
-    advice = walker.advice()
-
-    def extract(isovalue: float) -> Extraction:
-        vertices, triangles, facts = walker.propagate(volume.stored_isovalue(isovalue), options.threads)
-        return Extraction(placed_surface(volume, vertices, triangles, options), facts, advice)
-
-    return extract
-
-
-def placed_surface(volume: Volume, vertices: Any, triangles: Any, options: Options) -> Surface:
-    """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
-    normals = None
-    if options.normals:
-        below = volume.inside_is_below
-        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, below, options.threads)
-    return place_fresh(
-        vertices, triangles, normals, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
-    )
-
-
 BACKENDS: dict[str, Backend] = {
     backend.name: backend
     for backend in (
@@ -126,14 +76,14 @@ BACKENDS: dict[str, Backend] = {
             name="thinning",
             title="volume thinning",
             accepts=(CellMesh, Volume),
-            prepare=_prepare_thinning,
+            prepare=prepare_thinning,
             cites="Itoh, Yamaguchi, Koyamada 1996, 2001",
         ),
         Backend(
             name="mc",
             title="marching cubes; marching tetrahedra for meshes",
             accepts=(Volume, CellMesh),
-            prepare=_prepare_marching_cubes,
+            prepare=prepare_marching_cubes,
             options=frozenset({"topology"}),
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),

@@ -7,7 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from isocore.cell_mesh import CellMesh
 from isocore.surface import Surface
+from isocore.volume import Volume
+
+Field = Volume | CellMesh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

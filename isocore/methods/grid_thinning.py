@@ -12,11 +12,25 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
+from isocore.extraction import Extract, Extraction, Options
+from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
 
 # As in thinning.py; the longest axis whose index coordinates float32 keeps apart, as in marching cubes.
 _NOISE = 0.05
 _LONGEST_FOR_FLOAT32 = 8192
+
+
+def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
+    """Thin the volume now; then walk for every isovalue."""
+    walker = GridWalker(volume, capped=options.cap)
+    advice = walker.advice()
+
+    def extract(isovalue: float) -> Extraction:
+        vertices, triangles, facts = walker.propagate(volume.stored_isovalue(isovalue), options.threads)
+        return Extraction(placed_surface(volume, vertices, triangles, options), facts, advice)
+
+    return extract
 
 
 class GridWalker:

@@ -16,7 +16,8 @@ import numpy.typing as npt
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import IsocoreError
-from isocore.extraction import Extract, Extraction, Options
+from isocore.extraction import Extract, Extraction, Field, Options
+from isocore.methods.grid_thinning import prepare_grid_thinning
 from isocore.methods.index_file import load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
@@ -34,7 +35,12 @@ def build_index(mesh: CellMesh) -> MeshIndex:
     return MeshIndex(IndexPart(*tets), IndexPart(*hexes), original, edges)
 
 
-def prepare_thinning(mesh: CellMesh, options: Options) -> Extract:
+def prepare_thinning(field: Field, options: Options) -> Extract:
+    """Thin the field once, then walk for every isovalue."""
+    return _prepare_mesh(field, options) if isinstance(field, CellMesh) else prepare_grid_thinning(field, options)
+
+
+def _prepare_mesh(mesh: CellMesh, options: Options) -> Extract:
     """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
     index, warnings = _index_of(mesh, options)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))

@@ -1,0 +1,57 @@
+"""Marching cubes: a volume's full scan, and the place of a volume's surfaces in its world.
+
+Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991. Of a mesh, marching_cells.py scans the cells.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.cell_mesh import CellMesh
+from isocore.errors import OptionError
+from isocore.extraction import Extract, Extraction, Field, Options
+from isocore.methods.marching_cells import prepare_marching_cells
+from isocore.surface import Surface, place_fresh
+from isocore.volume import Volume
+
+TOPOLOGIES = ("faces", "trilinear")
+
+
+def prepare_marching_cubes(field: Field, options: Options) -> Extract:
+    """Scan the whole field for every isovalue."""
+    trilinear = options.topology == "trilinear"
+    if options.topology not in (None, *TOPOLOGIES):
+        raise OptionError(f"--topology {options.topology}: must be {' or '.join(TOPOLOGIES)}")
+    if isinstance(field, CellMesh):
+        if trilinear:
+            raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
+        return prepare_marching_cells(field, options)
+    volume = field
+
+    def extract(isovalue: float) -> Extraction:
+        stored = volume.stored_isovalue(isovalue)
+        vertices, triangles, faces, cells, tubes = _kernels.marching_cubes(
+            volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
+        )
+        surface = placed_surface(volume, vertices, triangles, options)
+        ambiguous = {"faces": faces, "cells": cells} | ({"tubes": tubes} if trilinear else {})
+        return Extraction(surface, {"ambiguous": ambiguous})
+
+    return extract
+
+
+def placed_surface(
+    volume: Volume, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], options: Options
+) -> Surface:
+    """A kernel's index-space mesh as a Surface in the volume's world, with normals where they are asked for."""
+    normals = None
+    if options.normals:
+        below = volume.inside_is_below
+        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, below, options.threads)
+    return place_fresh(
+        vertices, triangles, normals, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
+    )
