@@ -16,7 +16,7 @@ Field = Volume | CellMesh
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Options:
-    """What a user may ask of an extraction. A backend lists those it understands beyond the first three.
+    """What a user may ask of an extraction. A backend lists those it understands beyond the first five.
 
     threads: at least 1. Results do not depend on it.
     cap: close the surface at the volume's border.
