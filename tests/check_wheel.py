@@ -14,7 +14,7 @@ def problems(wheel: Path) -> list[str]:
     found = []
     if tops != {"isocore"}:
         found.append(f"{wheel.name}: top-level names are {sorted(tops)}, not isocore alone")
-    for needed in ("isocore/py.typed", "isocore/_kernels.pyi", "isocore/cli/main.py"):
+    for needed in ("isocore/py.typed", "isocore/_kernels.pyi", "isocore/cli/main.py", "isocore/batches/worker.py"):
         if needed not in names:
             found.append(f"{wheel.name}: {needed} is missing")
     if not any(name.startswith("isocore/_kernels_base.") and name.endswith((".so", ".pyd")) for name in names):
