@@ -11,12 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any
 
-from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Field, Options
-from isocore.methods.climbing import bound_for, check_block_size, climbing_facts
-from isocore.methods.marching_cubes import placed_surface, prepare_marching_cubes
+from isocore.methods.climbing import prepare_climbing
+from isocore.methods.marching_cubes import prepare_marching_cubes
 from isocore.methods.thinning import prepare_thinning
 from isocore.surface import Surface
 from isocore.volume import Volume
@@ -36,31 +35,6 @@ class Backend:
     cites: str = ""
 
 
-def _prepare_climbing(volume: Volume, options: Options) -> Extract:
-    block_size = check_block_size(options.block_size)
-    bound = bound_for(volume, options.max_error)
-    # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
-    ranges = _kernels.sample_ranges(volume.samples, options.threads) if options.isovalues > 1 else None
-
-    def extract(isovalue: float) -> Extraction:
-        vertices, triangles, facts = _kernels.climb(
-            volume.samples,
-            volume.stored_isovalue(isovalue),
-            volume.inside_is_below,
-            options.cap,
-            options.threads,
-            block_size,
-            bound.distance,
-            bound.in_world,
-            volume.spacing,
-            ranges=ranges,
-        )
-        surface = placed_surface(volume, vertices, triangles, options)
-        return Extraction(surface, climbing_facts(facts, bound, volume.unit))
-
-    return extract
-
-
 BACKENDS: dict[str, Backend] = {
     backend.name: backend
     for backend in (
@@ -68,7 +42,7 @@ BACKENDS: dict[str, Backend] = {
             name="asc",
             title="adaptive skeleton climbing",
             accepts=(Volume,),
-            prepare=_prepare_climbing,
+            prepare=prepare_climbing,
             options=frozenset({"block_size", "max_error"}),
             cites="Poston, Wong, Heng 1998",
         ),

@@ -31,7 +31,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "whole_file": {"errors"},
     "report": {"surface", "errors", "whole_file"} | KERNELS,
     "methods": NOUNS | KERNELS | {"whole_file"},
-    "backends": NOUNS | KERNELS | {"methods"},
+    "backends": NOUNS | {"methods"},
     "benches": NOUNS | KERNELS | {"methods"},
     **dict.fromkeys(FIELD_ROOMS, NOUNS | KERNELS | FIELD_ROOMS),
 }

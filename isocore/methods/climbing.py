@@ -1,4 +1,4 @@
-"""What a user may ask of adaptive skeleton climbing, understood and checked.
+"""Adaptive skeleton climbing on volumes: what a user may ask of it, checked, and what it found.
 
 The method is that of Poston, Wong, Heng, "Multiresolution Isosurface Extraction with Adaptive Skeleton Climbing",
 Computer Graphics Forum 17(3), 1998; kernels/climbing/README.md says where ours departs from it.
@@ -13,7 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from isocore import _kernels
 from isocore.errors import OptionError
+from isocore.extraction import Extract, Extraction, Options
+from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
 
 BLOCK_SIZES = (1, 2, 4, 8, 16, 32)
@@ -36,6 +39,32 @@ class Bound:
     distance: float
     in_world: bool
     text: str
+
+
+def prepare_climbing(volume: Volume, options: Options) -> Extract:
+    """Check what is asked; before several isovalues, look once at the range of each part of the volume."""
+    block_size = check_block_size(options.block_size)
+    bound = bound_for(volume, options.max_error)
+    # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
+    ranges = _kernels.sample_ranges(volume.samples, options.threads) if options.isovalues > 1 else None
+
+    def extract(isovalue: float) -> Extraction:
+        vertices, triangles, facts = _kernels.climb(
+            volume.samples,
+            volume.stored_isovalue(isovalue),
+            volume.inside_is_below,
+            options.cap,
+            options.threads,
+            block_size,
+            bound.distance,
+            bound.in_world,
+            volume.spacing,
+            ranges=ranges,
+        )
+        surface = placed_surface(volume, vertices, triangles, options)
+        return Extraction(surface, climbing_facts(facts, bound, volume.unit))
+
+    return extract
 
 
 def check_block_size(size: int | None) -> int:
