@@ -136,24 +136,25 @@ def percentile(histogram: Histogram, percent: float) -> float:
     """
     share = percent / 100 if histogram.slope > 0 else 1 - percent / 100
     rank = min(int(share * histogram.finite), histogram.finite - 1)
-    bin_, rank_within = _bin_of_rank(histogram.counts, rank)
+    bin_ = _bin_of_rank(histogram.counts, rank)
     if histogram.exact:
         return histogram.minimum + bin_
-    low = histogram.minimum + bin_ * histogram.width
-    high = min(low + histogram.width, histogram.maximum)
-    finer = _kernels.histogram(histogram.samples, low, high, len(histogram.counts), histogram.threads)
-    if int(finer.sum()) <= rank_within:
-        return high
-    fine_bin, _ = _bin_of_rank(finer, rank_within)
-    return low + (fine_bin + 0.5) * (high - low) / len(finer)
+    # A sample at the edge of a bin may be counted on either side of it: half a bin more holds it for certain.
+    low = max(histogram.minimum, histogram.minimum + (bin_ - 0.5) * histogram.width)
+    high = min(histogram.maximum, histogram.minimum + (bin_ + 1.5) * histogram.width)
+    finer = _counts(histogram, low, high, len(histogram.counts))
+    below = math.nextafter(low, -math.inf)
+    before = int(_counts(histogram, histogram.minimum, below, 1)[0]) if low > histogram.minimum else 0
+    return low + (_bin_of_rank(finer, rank - before) + 0.5) * (high - low) / len(finer)
 
 
-def _bin_of_rank(counts: npt.NDArray[np.uint64], rank: int) -> tuple[int, int]:
-    """The bin that holds the sample of this rank, and the sample's rank within it."""
-    sums = np.cumsum(counts)
-    bin_ = int(np.searchsorted(sums, rank, side="right"))
-    before = int(sums[bin_ - 1]) if bin_ else 0
-    return bin_, rank - before
+def _counts(histogram: Histogram, low: float, high: float, bins: int) -> npt.NDArray[np.uint64]:
+    return _kernels.histogram(histogram.samples, low, high, bins, histogram.threads)
+
+
+def _bin_of_rank(counts: npt.NDArray[np.uint64], rank: int) -> int:
+    """The bin that holds the sample of this rank."""
+    return int(np.searchsorted(np.cumsum(counts), rank, side="right"))
 
 
 def suggestions(histogram: Histogram) -> tuple[Chosen, ...]:

@@ -43,6 +43,15 @@ def test_a_percentile_has_its_share_below(values: npt.NDArray[np.float32], perce
     assert abs(found - exact) <= (ordered[-1] - ordered[0]) / 4096**2 + 1e-5
 
 
+def test_a_percentile_is_found_at_the_edge_of_a_bin() -> None:
+    """Samples one rounding below the edge between two of the coarse bins, and exactly on it."""
+    for middle in (-3.345521e-19, 0.0, 3.345521e-19):
+        values = np.full(64, middle, np.float32)
+        values[0], values[-1] = -99, 99
+        for percent in (2, 50, 98):
+            assert percentile(histogram(volume(values)), percent) == pytest.approx(0, abs=198 / 4096**2)
+
+
 def test_otsu_separates_two_heaps() -> None:
     """Halfway between the nearest samples of both, whether bins are exact or not."""
     heaps = np.concatenate([np.full(90, 10), np.full(4, 12), np.full(30, 100), np.full(4, 90)])
