@@ -3,6 +3,7 @@
 
 void test_crossing();
 void test_cell_loops();
+void test_climbing();
 void test_marching_cubes();
 void test_tubes();
 void test_thinning();
@@ -10,6 +11,7 @@ void test_thinning();
 int main() {
     test_crossing();
     test_cell_loops();
+    test_climbing();
     test_marching_cubes();
     test_tubes();
     test_thinning();

@@ -1,39 +1,16 @@
 // Marching cubes from C++: small volumes, so that the sanitizers see every path.
 #include <cstdint>
 #include <initializer_list>
-#include <map>
-#include <random>
-#include <utility>
-#include <vector>
 
 #include "check.hpp"
 #include "marching_cubes/marching_cubes.hpp"
+#include "small_volumes.hpp"
 
 namespace {
 
 using namespace isocore;
 using marching_cubes::march;
 using marching_cubes::Options;
-
-template <class Sample>
-std::vector<Sample> noise(const Dims& dims, int levels, unsigned seed) {
-    std::mt19937 random(seed);
-    std::vector<Sample> samples(dims[0] * dims[1] * dims[2]);
-    for (Sample& sample : samples) sample = static_cast<Sample>(random() % static_cast<unsigned>(levels));
-    return samples;
-}
-
-template <class Mesh>
-bool closed_and_oriented(const Mesh& mesh) {
-    std::map<std::pair<int, int>, int> sides;
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-        for (std::size_t n = 0; n < 3; ++n) ++sides[{mesh.triangles[t + n], mesh.triangles[t + (n + 1) % 3]}];
-    }
-    for (const auto& [side, count] : sides) {
-        if (count != 1 || sides.count({side.second, side.first}) == 0) return false;
-    }
-    return true;
-}
 
 template <class Sample>
 void capped_noise_is_closed() {
