@@ -126,6 +126,14 @@ def test_single_voxels_plates_and_touching_voxels_are_manifold() -> None:
         assert compare(Volume(np.asfortranarray(samples)), 0.5, block_size=size, max_error=0.3) == []
 
 
+def test_a_block_may_hold_more_crossings_than_a_short_counts() -> None:
+    """A chessboard beside a flat wall: 67,765 crossings in one block of the largest size."""
+    samples = (np.indices((33, 33, 33)).sum(axis=0) % 2).astype(np.uint8)
+    samples[21:28] = 0
+    samples[28:] = 1
+    assert compare(Volume(np.asfortranarray(samples)), 0.5, block_size=32, max_error=0.3) == []
+
+
 @pytest.mark.parametrize("size", [0, 3, 64, -1])
 def test_the_kernel_refuses_other_block_sizes(size: int) -> None:
     """Callers check first; the kernel checks all the same."""

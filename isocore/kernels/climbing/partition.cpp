@@ -22,7 +22,8 @@ namespace {
 template <int N>
 class Partition {
   public:
-    Partition(const SignGrid& signs, Layout& layout, const Judge* judge) : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
+    Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
+        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
 
     void begin_bar(std::size_t y, std::size_t z) { site_.begin(signs_, layout_, y, z); }
 
@@ -67,12 +68,12 @@ class Partition {
 
     void gather() {
         site_.lay_columns();
-        std::uint16_t count = 0;
+        std::uint32_t count = 0;
         for (int k = 0; k <= site_.cells[2]; ++k) {
             for (int j = 0; j <= site_.cells[1]; ++j) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     first_[row_index(j, k)][axis] = count;
-                    count = static_cast<std::uint16_t>(count + std::popcount(site_.row(j, k).crossed[axis]));
+                    count += static_cast<std::uint32_t>(std::popcount(site_.row(j, k).crossed[axis]));
                 }
             }
         }
@@ -218,9 +219,9 @@ class Partition {
     Cuts<N> cuts_;
     std::array<std::uint32_t, N * N> cells_;  // highrices of one cell: [k][j], bit i
     Clouds clouds_;
-    Cloud crossings_;                                                              // of the whole block
-    std::array<std::array<std::uint16_t, 3>, (N + 1) * (N + 1)> first_;  // of them, the first along each axis of row (j, k)
-    Table asked_, passed_;                                                         // of the boxes judged
+    Cloud crossings_;                                                    // of the whole block
+    std::array<std::array<std::uint32_t, 3>, (N + 1) * (N + 1)> first_;  // of them, the first along each axis of row (j, k)
+    Table asked_, passed_;                                               // boxes by labels: judged, and found flat
 };
 
 template <int N>
