@@ -7,16 +7,13 @@ distance from the isovalue says how close the decision was.
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.volume import Volume
-from isocore.whole_file import whole_file
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,21 +38,3 @@ def find_ambiguities(volume: Volume, isovalue: float, *, threads: int = 1) -> Am
     )
     points = places @ volume.affine[:3, :3].T + volume.affine[:3, 3]
     return Ambiguities(points, distances * abs(volume.slope), volume.space, volume.unit)
-
-
-def write_ambiguities(target: os.PathLike[str] | str, found: Ambiguities) -> None:
-    """Write a PLY of points with the scalar property `saddle_distance`, whole or not at all."""
-    row: Any = np.dtype([("place", "<f4", 3), ("saddle_distance", "<f4")])
-    rows = np.empty(len(found.points), row)
-    rows["place"], rows["saddle_distance"] = found.points, found.distances
-    lines = ["ply", "format binary_little_endian 1.0"]
-    if found.space != "native":
-        lines.append(f"comment SPACE={found.space.upper()}")
-    if found.unit:
-        lines.append(f"comment units {found.unit}")
-    lines.append(f"element vertex {len(rows)}")
-    lines += [f"property float {name}" for name in ("x", "y", "z", "saddle_distance")]
-    lines.append("end_header")
-    with whole_file(target) as stream:
-        stream.write(("\n".join(lines) + "\n").encode("ascii"))
-        stream.write(rows.tobytes())

@@ -12,7 +12,7 @@ from time import perf_counter
 from typing import Any, BinaryIO, ParamSpec, TypeVar, cast
 
 from isocore import compose
-from isocore.ambiguities import find_ambiguities, write_ambiguities
+from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Options, default_backend, prepare
 from isocore.errors import FieldError, IsocoreError, OptionError, writing
 from isocore.histogram import histogram
@@ -27,6 +27,7 @@ from isocore.surface import Surface
 from isocore.volume import Space, Volume
 from isocore.whole_file import whole_file
 from isocore.writers import writer_for
+from isocore.writers.ply import write_ply_points
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -204,7 +205,11 @@ def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
         return
     if not isinstance(source, Volume):
         raise OptionError(f"--ambiguities {job.ambiguities}: is for volumes only; leave it out")
-    write_ambiguities(job.ambiguities, find_ambiguities(source, isovalue, threads=job.options.threads))
+    found = find_ambiguities(source, isovalue, threads=job.options.threads)
+    with whole_file(job.ambiguities) as stream:
+        write_ply_points(
+            stream, found.points, "saddle_distance", found.distances, space=found.space, unit=found.unit
+        )
 
 
 class _Reference:

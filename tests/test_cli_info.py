@@ -16,7 +16,7 @@ from small_files import ball, write_nifti
 from isocore.cell_mesh import CellMesh
 from isocore.describe import orientation
 from isocore.extrema import count_extrema
-from isocore.volume import Volume
+from isocore.volume import Space, Volume
 
 
 def run(*arguments: object) -> Result:
@@ -79,7 +79,7 @@ def test_extrema_follow_the_order_of_value_and_number() -> None:
 
 
 @pytest.mark.parametrize("space", ["ras", "lps", "las"])
-def test_orientation_names_all_48_ways(space: str) -> None:
+def test_orientation_names_all_48_ways(space: Space) -> None:
     """As letters of where each index axis grows to."""
     sides = (("L", "R"), ("P", "A"), ("I", "S"))
     seen = set()
@@ -88,7 +88,7 @@ def test_orientation_names_all_48_ways(space: str) -> None:
         affine[:3, :3] = 0
         for column, (row, sign) in enumerate(zip(order, signs, strict=True)):
             affine[row, column] = sign * (column + 1)
-        volume = Volume(np.zeros((2, 2, 2), np.uint8, order="F"), affine=affine, space="ras").in_space(space)  # type: ignore[arg-type]
+        volume = Volume(np.zeros((2, 2, 2), np.uint8, order="F"), affine=affine, space="ras").in_space(space)
         letters, oblique = orientation(volume)
         assert letters == "".join(sides[row][sign > 0] for row, sign in zip(order, signs, strict=True))
         assert not oblique

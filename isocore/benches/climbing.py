@@ -8,14 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from statistics import median
 from time import perf_counter
+from typing import TypeAlias, TypeVar
 
 from isocore import _kernels
 from isocore.benches.thinning import Table
 from isocore.errors import FieldError
-from isocore.methods.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, bound_for
+from isocore.methods.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, Bound, bound_for
 from isocore.volume import Volume
+
+#: Max, mean and rms, in voxels.
+Deviation: TypeAlias = tuple[float, float, float]
+Found = TypeVar("Found")
 
 MAX_ERRORS = ("none", "1", "0.5", "0.25", "0.1")
 _COLUMNS = (
@@ -39,7 +45,7 @@ class Run:
     max_error: str
     triangles: int
     seconds: float
-    error: tuple[float, float, float]
+    error: Deviation
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +86,12 @@ def volume_bench(
     def march() -> int:
         return len(_kernels.marching_cubes(volume.samples, stored, below, False, threads)[1])
 
+    def climb(size: int, bound: Bound) -> tuple[int, Deviation]:
+        _, triangles, facts = _kernels.climb(
+            volume.samples, stored, below, False, threads, size, bound.distance, bound.in_world, volume.spacing
+        )
+        return len(triangles), facts["error_voxels"]
+
     mc_seconds, mc_triangles = _median_of(march, repeats)
     if mc_triangles == 0:
         raise FieldError(f"isovalue {isovalue:g} draws no surface; choose another with -i")
@@ -87,22 +99,12 @@ def volume_bench(
     plans += [(DEFAULT_BLOCK_SIZE, text) for text in max_errors if text != "none"]
     runs = []
     for size, text in plans:
-        bound = bound_for(volume, text)
-        facts: dict[str, tuple[float, float, float]] = {}
-
-        def climb(size: int = size, distance: float = bound.distance, in_world: bool = bound.in_world) -> int:
-            _, triangles, found = _kernels.climb(
-                volume.samples, stored, below, False, threads, size, distance, in_world, volume.spacing
-            )
-            facts.update(found)  # noqa: B023  # called before the loop goes on
-            return len(triangles)
-
-        seconds, triangles = _median_of(climb, repeats)
-        runs.append(Run(size, text, triangles, seconds, facts["error_voxels"]))
+        seconds, (triangles, error) = _median_of(partial(climb, size, bound_for(volume, text)), repeats)
+        runs.append(Run(size, text, triangles, seconds, error))
     return ClimbingBench(isovalue, mc_triangles, mc_seconds, tuple(runs))
 
 
-def _median_of(work: Callable[[], int], repeats: int) -> tuple[float, int]:
+def _median_of(work: Callable[[], Found], repeats: int) -> tuple[float, Found]:
     """Median seconds after one warm-up, and what the work returned."""
     result = work()
     seconds = []

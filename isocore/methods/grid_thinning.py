@@ -16,8 +16,9 @@ from isocore.extraction import Extract, Extraction, Options
 from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
 
-# As in thinning.py; the longest axis whose index coordinates float32 keeps apart, as in marching cubes.
-_NOISE = 0.05
+#: Past this share of the vertices, extrema are noise: the skeleton grows with them, and the walk saves little.
+NOISE = 0.05
+# The longest axis whose index coordinates float32 keeps apart, as in marching cubes.
 _LONGEST_FOR_FLOAT32 = 8192
 
 
@@ -66,7 +67,7 @@ class GridWalker:
     def advice(self) -> tuple[str, ...]:
         """Thinning seldom pays on volumes, whose full scan takes 64 cells at a time; on noise it never does."""
         share = self._known["extrema"] / self._known["cells"]
-        if share > _NOISE:
+        if share > NOISE:
             return (
                 f"the field is noise to thinning: {self._known['extrema']:,} extrema, and a skeleton of "
                 f"{self._known['skeleton']:,} of {self._known['cells']:,} cells; choose -b mc",

@@ -17,16 +17,13 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import IsocoreError
 from isocore.extraction import Extract, Extraction, Field, Options
-from isocore.methods.grid_thinning import prepare_grid_thinning
+from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
 #: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
 Walked: TypeAlias = tuple[npt.NDArray[Any], npt.NDArray[np.int32], int, int]
-
-# Past this share of the vertices, extrema are noise: the skeleton grows with them, and the walk saves little.
-_NOISE = 0.05
 
 
 def build_index(mesh: CellMesh) -> MeshIndex:
@@ -67,7 +64,7 @@ def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, tuple[str, .
     index = build_index(mesh)
     if options.isovalues == 1:
         warnings.append("one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`")
-    if index.extrema > _NOISE * len(mesh.points):
+    if index.extrema > NOISE * len(mesh.points):
         share = 100 * index.extrema / len(mesh.points)
         warnings.append(
             f"{share:.0f} % of the points are extrema, so the field is noise to thinning and its skeleton holds "

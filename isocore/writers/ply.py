@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import BinaryIO
+from collections.abc import Iterable, Iterator
+from typing import Any, BinaryIO
 
 import numpy as np
+import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.surface import Surface
@@ -13,7 +15,7 @@ from isocore.writers.pieces import pieces
 
 def write_ply(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ...]:
     """Write vertices, normals where there are any, and triangles."""
-    stream.write(_header(surface).encode("ascii"))
+    stream.write(_header(surface.space, surface.unit, _elements(surface)))
     if surface.normals is None:
         stream.write(surface.vertices.astype(surface.vertices.dtype.newbyteorder("<"), copy=False).data)
     else:
@@ -27,18 +29,33 @@ def write_ply(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ..
     return ()
 
 
-def _header(surface: Surface) -> str:
-    real = "float" if surface.vertices.dtype == np.float32 else "double"
+def write_ply_points(
+    stream: BinaryIO, points: npt.NDArray[Any], name: str, values: npt.NDArray[Any], *, space: str, unit: str
+) -> None:
+    """Write points (n, 3) with a value each, the scalar property `name` (n,); all float32."""
+    row: Any = np.dtype([("place", "<f4", 3), ("value", "<f4")])
+    rows = np.empty(len(points), row)
+    rows["place"], rows["value"] = points, values
+    properties = (f"property float {each}" for each in ("x", "y", "z", name))
+    stream.write(_header(space, unit, (f"element vertex {len(rows)}", *properties)))
+    stream.write(rows.data)
+
+
+def _header(space: str, unit: str, elements: Iterable[str]) -> bytes:
+    """The lines before the data. elements: each element and each property, as PLY writes them."""
     lines = ["ply", "format binary_little_endian 1.0"]
-    if surface.space != "native":
-        lines.append(f"comment SPACE={surface.space.upper()}")
-    if surface.unit:
-        lines.append(f"comment units {surface.unit}")
-    lines.append(f"element vertex {len(surface.vertices)}")
-    lines += [f"property {real} {axis}" for axis in "xyz"]
+    if space != "native":
+        lines.append(f"comment SPACE={space.upper()}")
+    if unit:
+        lines.append(f"comment units {unit}")
+    return "".join(f"{line}\n" for line in (*lines, *elements, "end_header")).encode("ascii")
+
+
+def _elements(surface: Surface) -> Iterator[str]:
+    real = "float" if surface.vertices.dtype == np.float32 else "double"
+    yield f"element vertex {len(surface.vertices)}"
+    yield from (f"property {real} {axis}" for axis in "xyz")
     if surface.normals is not None:
-        lines += [f"property float n{axis}" for axis in "xyz"]
-    lines.append(f"element face {len(surface.triangles)}")
-    lines.append("property list uchar int vertex_indices")
-    lines.append("end_header")
-    return "\n".join(lines) + "\n"
+        yield from (f"property float n{axis}" for axis in "xyz")
+    yield f"element face {len(surface.triangles)}"
+    yield "property list uchar int vertex_indices"

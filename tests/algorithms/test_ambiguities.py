@@ -10,8 +10,9 @@ import pytest
 from shapes import integer_noise, volume_of
 
 from isocore import _kernels
-from isocore.ambiguities import find_ambiguities, write_ambiguities
+from isocore.ambiguities import find_ambiguities
 from isocore.volume import Volume
+from isocore.writers.ply import write_ply_points
 
 
 def test_one_face_has_its_saddle() -> None:
@@ -65,8 +66,9 @@ def test_the_file_is_a_ply_of_points_in_the_world(tmp_path: Path) -> None:
     samples = np.asfortranarray(np.random.default_rng(0).integers(0, 3, (6, 7, 8)).astype(np.uint8))
     found = find_ambiguities(Volume(samples, affine=affine, unit="mm"), 1.0)
     assert len(found.points)
-    write_ambiguities(tmp_path / "places.ply", found)
+    with (tmp_path / "places.ply").open("wb") as stream:
+        write_ply_points(stream, found.points, "saddle_distance", found.distances, space="ras", unit=found.unit)
     back = meshio.read(tmp_path / "places.ply")
     assert back.points == pytest.approx(found.points, rel=1e-6)
     assert back.point_data["saddle_distance"] == pytest.approx(found.distances, rel=1e-6)
-    assert b"comment units mm" in (tmp_path / "places.ply").read_bytes()
+    assert b"comment SPACE=RAS\ncomment units mm\n" in (tmp_path / "places.ply").read_bytes()

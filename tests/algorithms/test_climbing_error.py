@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from shapes import padded_shapes
+from shapes import Shape, padded_shapes
 
 from isocore import _kernels
 from isocore.backends import Options, prepare
@@ -72,9 +72,9 @@ def test_no_point_of_our_surface_is_far_from_marching_cubes(max_error: float) ->
 
 @pytest.mark.parametrize("shape", padded_shapes(), ids=lambda shape: shape.name)
 @pytest.mark.parametrize("bound", ["0.05", "0.5"])
-def test_a_backend_keeps_its_bound_and_reports_it(shape: object, bound: str) -> None:
+def test_a_backend_keeps_its_bound_and_reports_it(shape: Shape, bound: str) -> None:
     """Through the table of backends, by the report's keys."""
-    facts = prepare(shape.volume, "asc", Options(max_error=bound))(shape.isovalue).facts  # type: ignore[attr-defined]
+    facts = prepare(shape.volume, "asc", Options(max_error=bound))(shape.isovalue).facts
     assert facts["error"]["max"] <= float(bound)
     assert 0 <= facts["error"]["mean"] <= facts["error"]["rms"] <= facts["error"]["max"]
     assert facts["error"]["bound"] == bound

@@ -12,6 +12,7 @@ import math
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -104,9 +105,9 @@ def real() -> int:
     return broken
 
 
-def report(name: str, volume: Volume, isovalue: float, **options: object) -> int:
+def report(name: str, volume: Volume, isovalue: float, **options: Any) -> int:
     """1 and a line on the screen if a promise is broken, else 0."""
-    found = compare(volume, isovalue, **options)  # type: ignore[arg-type]  # options by name
+    found = compare(volume, isovalue, **options)
     if found:
         print(f"{name}, isovalue {isovalue:g}, {options}: {'; '.join(found)}")
     return int(bool(found))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from functools import partial
 from statistics import median
 from time import perf_counter
 from typing import Any
@@ -81,15 +82,18 @@ def main() -> None:
     def climb(error: float) -> Mesh:
         return _kernels.climb(field.samples, stored, below, False, 1, 16, error)[:2]
 
+    def decimate(simplify: Callable[[Mesh, int], Mesh], target: int) -> Mesh:
+        return simplify(march(), target)
+
     mc_seconds, reference = timed(march)
     near_reference = cKDTree(np.concatenate([sampled(reference), reference[0]]))
     rows = [("marching cubes", mc_seconds, reference)]
     for error in (float("inf"), 0.5):
-        seconds, ours = timed(lambda error=error: climb(error))  # type: ignore[misc]
+        seconds, ours = timed(partial(climb, error))
         rows.append((f"asc, max error {error:g}", seconds, ours))
         for name, simplify in (("fast-simplification", by_fast_simplification), ("meshoptimizer", by_meshoptimizer)):
             target = len(ours[1])
-            seconds, other = timed(lambda simplify=simplify, target=target: simplify(march(), target), 1)  # type: ignore[misc]
+            seconds, other = timed(partial(decimate, simplify, target), 1)
             rows.append((f"mc + {name}", seconds, other))
     print("| method | triangles | seconds | mc to it, max | mean | it to mc, max | components | Euler | non-manifold |")
     print("|---|---:|---:|---:|---:|---:|---:|---:|---:|")

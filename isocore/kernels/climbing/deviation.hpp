@@ -1,5 +1,5 @@
 // deviation.hpp - How far marching cubes' vertices lie from our surface: each is measured in one box, against the
-// triangles of that box. So the true distance is never larger, but for the rounding of floats.
+// triangles of that box. So the true distance is never larger.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "climbing/climb.hpp"
+#include "climbing/vectors.hpp"
 #include "common/array.hpp"
 #include "common/lanes.hpp"
 
@@ -22,17 +23,16 @@ inline void add(Deviation& sum, const Deviation& other) {
 // The triangles of a box, prepared for many points.
 class Facets {
   public:
-    using Numbers = Lanes<float>;
-    using Spot = std::array<float, 3>;
+    using Numbers = Lanes<double>;
     struct Spots {
         Numbers x, y, z;
     };
 
     void clear() { count_ = 0; }
-    void add(const Spot& a, const Spot& b, const Spot& c) {
-        if (corners_[0].size() < count_ + kLanes<float>) {
-            for (auto& numbers : corners_) numbers.resize(2 * count_ + kLanes<float>);
-            for (auto& numbers : prepared_) numbers.resize(2 * count_ + kLanes<float>);
+    void add(const Point& a, const Point& b, const Point& c) {
+        if (corners_[0].size() < count_ + kLanes<double>) {
+            for (auto& numbers : corners_) numbers.resize(2 * count_ + kLanes<double>);
+            for (auto& numbers : prepared_) numbers.resize(2 * count_ + kLanes<double>);
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             corners_[axis][count_] = a[axis];
@@ -45,14 +45,14 @@ class Facets {
     // After the last one was added.
     void prepare() {
         for (auto& numbers : corners_) {  // lanes that are not used hold some triangle too
-            for (std::size_t n = count_; n % kLanes<float> != 0; ++n) numbers[n] = numbers[0];
+            for (std::size_t n = count_; n % kLanes<double> != 0; ++n) numbers[n] = numbers[0];
         }
-        for (std::size_t n = 0; n < count_; n += kLanes<float>) prepare(n);
+        for (std::size_t n = 0; n < count_; n += kLanes<double>) prepare(n);
     }
 
-    // The squared distances from eight spots to the nearest triangle; exact but where several lie below a spot.
+    // The squared distances from some spots to the nearest triangle; exact but where several lie below a spot.
     Numbers squared_distances(const Spots& p) const {
-        const Numbers infinity(std::numeric_limits<float>::infinity()), zero(0.0f);
+        const Numbers infinity(std::numeric_limits<double>::infinity()), zero(0.0);
         Numbers best = infinity;
         for (std::size_t n = 0; n < count_; ++n) {
             const auto above = (zero <= over(kInward, n, p)) & (zero <= over(kInward + 4, n, p)) & (zero <= over(kInward + 8, n, p));
@@ -75,8 +75,8 @@ class Facets {
     }
 
     Numbers to_sides(std::size_t n, const Spots& p) const {
-        const Numbers zero(0.0f), one(1.0f);
-        Numbers best(std::numeric_limits<float>::infinity());
+        const Numbers zero(0.0), one(1.0);
+        Numbers best(std::numeric_limits<double>::infinity());
         for (std::size_t side = 0; side < 3; ++side) {
             const auto corner = [&](std::size_t axis) { return Numbers(corners_[3 * side + axis][n]); };
             const auto along = [&](std::size_t axis) { return prepared(kAlong + 3 * side + axis, n); };
@@ -89,9 +89,9 @@ class Facets {
         return best;
     }
 
-    // Eight triangles from the n-th on.
+    // As many triangles as there are lanes, from the n-th on.
     void prepare(std::size_t n) {
-        const Numbers one(1.0f), zero(0.0f);
+        const Numbers one(1.0), zero(0.0);
         const auto corner = [&](std::size_t c) {
             const auto axis = [&](std::size_t a) { return Numbers(corners_[3 * (c % 3) + a].data() + n); };
             return Spots{axis(0), axis(1), axis(2)};
@@ -123,8 +123,8 @@ class Facets {
     }
 
     std::size_t count_ = 0;
-    std::array<Array<float>, 9> corners_;
-    std::array<Array<float>, kNumbers> prepared_;
+    std::array<Array<double>, 9> corners_;
+    std::array<Array<double>, kNumbers> prepared_;
 };
 
 }  // namespace isocore::climbing

@@ -25,12 +25,11 @@ class Partition {
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
         : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
 
-    void begin_bar(std::size_t y, std::size_t z) { site_.begin(signs_, layout_, y, z); }
-
-    // Adds a block to its bar, unless all its samples lie on one side.
+    // Adds a block to its bar, unless all its samples lie on one side. A bar's blocks come in their order.
     void climb(const Dims& origin, BarBoxes& bar) {
         if (!block_.load(signs_, origin)) return;
         survey_.take(block_);
+        if (bar.blocks.empty()) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
         cuts_.clear();
         cells_ = {};
@@ -227,7 +226,6 @@ class Partition {
 template <int N>
 BarBoxes partition_bar(const SignGrid& signs, std::size_t y, std::size_t z, const Judge* judge, Layout& layout) {
     const auto partition = std::make_unique<Partition<N>>(signs, layout, judge);
-    partition->begin_bar(N * y, N * z);
     BarBoxes out;
     for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) partition->climb({x, N * y, N * z}, out);
     out.boxes.shrink_to_fit();

@@ -26,17 +26,17 @@ class Ruler {
         const auto& s = options.spacing;
         even_ = s[0] == s[1] && s[1] == s[2];
         const auto samples_in_face = static_cast<std::size_t>((options.block_size + 1) * (options.block_size + 1));
-        for (auto& axis : places_) axis.resize(3 * samples_in_face + kLanes<float>);  // no lign of a box is crossed twice
+        for (auto& axis : places_) axis.resize(3 * samples_in_face + kLanes<double>);  // no lign of a box is crossed twice
     }
 
     // Adds a box's deviations to those of its bar. False if one breaks the bound.
     bool measure(const Site& site, const HighRice& box, const Polygon& polygon, const std::vector<Polygon::Triangle>& triangles, Bar& bar) {
-        // Relative to a vertex of the box, so that floats are fine.
+        // Relative to a vertex of the box, where numbers are small.
         const Corner& near = polygon.corners.front();
         count_ = 0;
         gather(site, box, near.place);
         if (count_ == 0) return true;
-        for (auto& axis : places_) std::fill_n(axis.begin() + static_cast<std::ptrdiff_t>(count_), kLanes<float>, axis[0]);
+        for (auto& axis : places_) std::fill_n(axis.begin() + static_cast<std::ptrdiff_t>(count_), kLanes<double>, axis[0]);
         Deviation in_voxels = measure({1, 1, 1}, near.place, polygon, triangles), in_world;
         if (even_) {
             const double spacing = options_.spacing[0];
@@ -76,7 +76,7 @@ class Ruler {
         for (std::size_t a = 0; a < 3; ++a) {
             double place = static_cast<double>(whole(a)) - static_cast<double>(signs_.pad);
             if (static_cast<int>(a) == axis) place = static_cast<double>(static_cast<Coordinate>(place + crossing));
-            places_[a][count_] = static_cast<float>(place - origin[a]);
+            places_[a][count_] = place - origin[a];
         }
         ++count_;
     }
@@ -84,39 +84,39 @@ class Ruler {
     // The deviations of the noted places, stretched by `scale`.
     Deviation measure(const Point& scale, const Point& origin, const Polygon& polygon, const std::vector<Polygon::Triangle>& triangles) {
         const auto corner = [&](std::size_t n) {
-            Facets::Spot out;
-            for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>((polygon.corners[n].place[a] - origin[a]) * scale[a]);
+            Point out;
+            for (std::size_t a = 0; a < 3; ++a) out[a] = (polygon.corners[n].place[a] - origin[a]) * scale[a];
             return out;
         };
         facets_.clear();
         for (const auto& [a, b, c] : triangles) facets_.add(corner(a), corner(b), corner(c));
         facets_.prepare();
-        Facets::Numbers largest(0.0f), sum(0.0f), squares(0.0f);
-        for (std::size_t n = 0; n < count_; n += kLanes<float>) {
-            const auto axis = [&](std::size_t a) { return Facets::Numbers(places_[a].data() + n) * static_cast<float>(scale[a]); };
-            const auto used = Facets::Numbers(kLaneNumbers.data()) < static_cast<float>(count_ - n);
-            const Facets::Numbers found = choose(used, facets_.squared_distances({axis(0), axis(1), axis(2)}), 0.0f);
+        Facets::Numbers largest(0.0), sum(0.0), squares(0.0);
+        for (std::size_t n = 0; n < count_; n += kLanes<double>) {
+            const auto axis = [&](std::size_t a) { return Facets::Numbers(places_[a].data() + n) * scale[a]; };
+            const auto used = Facets::Numbers(kLaneNumbers.data()) < static_cast<double>(count_ - n);
+            const Facets::Numbers found = choose(used, facets_.squared_distances({axis(0), axis(1), axis(2)}), 0.0);
             largest = greatest(largest, found);
             squares = squares + found;
             sum = sum + root(found);
         }
         Deviation out;
-        for (std::size_t lane = 0; lane < kLanes<float>; ++lane) {
-            out.max = std::max(out.max, static_cast<double>(largest.each()[lane]));
-            out.sum += static_cast<double>(sum.each()[lane]);
-            out.squares += static_cast<double>(squares.each()[lane]);
+        for (std::size_t lane = 0; lane < kLanes<double>; ++lane) {
+            out.max = std::max(out.max, largest.each()[lane]);
+            out.sum += sum.each()[lane];
+            out.squares += squares.each()[lane];
         }
         out.max = std::sqrt(out.max);
         return out;
     }
 
-    static constexpr std::array<float, kLanes<float>> kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7};
+    static constexpr std::array<double, kLanes<double>> kLaneNumbers{0, 1, 2, 3};
 
     const GridView<Sample>& samples_;
     const SignGrid& signs_;
     const Options& options_;
     bool even_;
-    std::array<Array<float>, 3> places_;
+    std::array<Array<double>, 3> places_;
     std::size_t count_ = 0;
     Facets facets_;
 };

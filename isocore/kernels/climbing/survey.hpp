@@ -87,6 +87,9 @@ class Survey {
         }
     }
 
+    // Faces between four ligns of which each of the middle two is a neighbour of both others.
+    static Word alternating(Word first, Word one, Word other, Word last) { return (first ^ one) & (first ^ other) & ~(first ^ last); }
+
     // Marks what starts in plane j of the block.
     void mark_plane(const Block<N>& block, std::size_t j) {
         const Line &here = block.rows[j], &next = block.rows[std::min<std::size_t>(j + 1, N)];
@@ -97,15 +100,15 @@ class Survey {
             line(x_out)[k] = row & ~along & Bits::kUnits;
             line(y_in)[k] = ~row & right;
             line(y_out)[k] = row & ~right;
-            line(alternating_xy)[k] = (row ^ along) & (right ^ right >> 1) & (row ^ right) & Bits::kUnits;
+            line(alternating_xy)[k] = alternating(row, right, along, right >> 1) & Bits::kUnits;
             line(again_x)[k] = Bits::crossed_again(row);
         }
         for (std::size_t k = 0; k < N; ++k) {
             const Word row = here[k], right = next[k], up = here[k + 1];
             line(z_in)[k] = ~row & up;
             line(z_out)[k] = row & ~up;
-            line(alternating_xz)[k] = (row ^ row >> 1) & (up ^ up >> 1) & (row ^ up) & Bits::kUnits;
-            line(alternating_yz)[k] = (row ^ right) & (row ^ up) & ~(row ^ next[k + 1]);
+            line(alternating_xz)[k] = alternating(row, up, row >> 1, up >> 1) & Bits::kUnits;
+            line(alternating_yz)[k] = alternating(row, right, up, next[k + 1]);
         }
         for (const std::size_t m : {z_in, z_out, alternating_xz, alternating_yz}) line(m)[N] = 0;
     }

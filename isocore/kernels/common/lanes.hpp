@@ -1,5 +1,5 @@
-// lanes.hpp - Eight floating-point numbers at once. Every operation is that of its numbers
-// one by one, so results are the same bits with and without wide registers.
+// lanes.hpp - Eight floats or four doubles at once. Every operation is that of its numbers one by one, so results are the
+// same bits with and without wide registers.
 #pragma once
 
 #include <array>
@@ -55,6 +55,25 @@ struct LaneRegister<float> {
         _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, order));
     }
 };
+template <>
+struct LaneRegister<double> {
+    using Type = __m256d;
+    static Type load(const double* from) { return _mm256_loadu_pd(from); }
+    static Type all(double value) { return _mm256_set1_pd(value); }
+    static void store(double* to, Type a) { _mm256_storeu_pd(to, a); }
+    static Type add(Type a, Type b) { return _mm256_add_pd(a, b); }
+    static Type subtract(Type a, Type b) { return _mm256_sub_pd(a, b); }
+    static Type multiply(Type a, Type b) { return _mm256_mul_pd(a, b); }
+    static Type divide(Type a, Type b) { return _mm256_div_pd(a, b); }
+    static Type root(Type a) { return _mm256_sqrt_pd(a); }
+    static Type less(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+    static Type not_above(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+    static Type equal(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
+    static Type both(Type a, Type b) { return _mm256_and_pd(a, b); }
+    static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_pd(b, a, mask); }
+    static bool any(Type mask) { return _mm256_movemask_pd(mask) != 0; }
+};
+
 #else
 
 // A mask is 1 in its true lanes and 0 in the others.

@@ -3,7 +3,6 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -17,9 +16,6 @@
 
 namespace isocore::python {
 namespace {
-
-// float32 coordinates keep two vertices of one grid line apart up to this many samples.
-constexpr std::size_t kLongestForFloat = 8192;
 
 nb::tuple error_tuple(const climbing::Deviation& deviation, std::size_t crossings) {
     const double count = crossings ? static_cast<double>(crossings) : 1;
@@ -56,10 +52,9 @@ void bind(nb::module_& module) {
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size, double max_error,
            bool in_world, std::array<double, 3> spacing, bool measured, std::optional<Vector<Sample>> ranges) {
             const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured};
-            const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
             if (ranges && ranges->size() != range_count(grid_view(samples).dims)) throw nb::value_error("ranges of another volume");
             const Sample* given = ranges ? ranges->data() : nullptr;
-            return longest <= kLongestForFloat ? run<Sample, float>(samples, options, given) : run<Sample, double>(samples, options, given);
+            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options, given) : run<Sample, double>(samples, options, given);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
         nb::arg("block_size") = 16, nb::arg("max_error") = std::numeric_limits<double>::infinity(),

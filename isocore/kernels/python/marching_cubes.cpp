@@ -1,7 +1,6 @@
 // marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
 #include "marching_cubes/marching_cubes.hpp"
 
-#include <algorithm>
 
 #include "common/sample_types.hpp"
 #include "python/arrays.hpp"
@@ -9,9 +8,6 @@
 
 namespace isocore::python {
 namespace {
-
-// float32 coordinates keep two vertices of one grid line apart up to this many samples.
-constexpr std::size_t kLongestForFloat = 8192;
 
 template <class Sample, class Coordinate>
 nb::object run(const VolumeArray<Sample>& samples, const marching_cubes::Options& options) {
@@ -30,8 +26,7 @@ void bind(nb::module_& module) {
         "marching_cubes",
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, bool trilinear) {
             const marching_cubes::Options options{isovalue, below, capped, trilinear, threads};
-            const std::size_t longest = std::max({samples.shape(0), samples.shape(1), samples.shape(2)});
-            return longest <= kLongestForFloat ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
+            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
         nb::arg("trilinear") = false);
