@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -158,7 +159,8 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
     report = tmp_path / "run.json"
     arguments = [*PROGRAM, str(scans), "-d", str(tmp_path / "out"), *FAST, "-j", "2", "--report", str(report)]
     environment = {**os.environ, "ISOCORE_TEST_WORKER": "s11=hang"}
-    process = subprocess.Popen(arguments, stderr=subprocess.DEVNULL, env=environment)
+    with _interruptible():
+        process = subprocess.Popen(arguments, stderr=subprocess.DEVNULL, env=environment)
     try:
         for _ in _polling(60):
             if report.exists() and len(outputs(report)) == 11:
@@ -169,6 +171,19 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
         process.kill()
         process.wait(10)
     assert len(outputs(report)) == 11 and len(contents(tmp_path / "out")) == 11
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Children started here can be interrupted, also where the tests run in the background of a script.
+
+    Such a shell has its jobs ignore SIGINT, and whoever is started ignoring a signal goes on ignoring it.
+    """
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous)
 
 
 def _polling(seconds: float) -> Iterator[None]:
