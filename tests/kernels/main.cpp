@@ -1,6 +1,7 @@
 // One program, one line per file of tests. Runs under address and undefined-behaviour sanitizers: `make kernels`.
 #include <cstdio>
 
+void test_bits();
 void test_crossing();
 void test_cell_loops();
 void test_climbing();
@@ -9,6 +10,7 @@ void test_tubes();
 void test_thinning();
 
 int main() {
+    test_bits();
     test_crossing();
     test_cell_loops();
     test_climbing();

@@ -26,7 +26,7 @@ std::uint64_t alternating(const SignGrid& signs, int axis, std::size_t j, std::s
         return (row[w] ^ right) & (row[w] ^ up) & ~(row[w] ^ both);
     }
     const std::uint64_t* other = axis == 1 ? signs.row(j, k + 1) : signs.row(j + 1, k);
-    const std::uint64_t next = next_samples(row, w, signs.words), other_next = next_samples(other, w, signs.words);
+    const std::uint64_t next = next_samples(row, w), other_next = next_samples(other, w);
     return (row[w] ^ next) & (row[w] ^ other[w]) & ~(row[w] ^ other_next) & signs.valid(w, 1);
 }
 

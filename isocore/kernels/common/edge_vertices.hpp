@@ -7,10 +7,12 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "common/array.hpp"
 #include "common/crossing.hpp"
 #include "common/grid.hpp"
+#include "common/set_bits.hpp"
 #include "common/signs.hpp"
 
 namespace isocore {
@@ -21,7 +23,7 @@ using RowBase = std::array<std::uint32_t, 3>;
 // Crossings of the edges along `axis` that start in word w of row (j, k); 0 where the volume ends.
 inline std::uint64_t crossed_edges(const SignGrid& signs, int axis, std::size_t j, std::size_t k, std::size_t w) {
     const std::uint64_t* row = signs.row(j, k);
-    if (axis == 0) return (row[w] ^ next_samples(row, w, signs.words)) & signs.valid(w, 1);
+    if (axis == 0) return (row[w] ^ next_samples(row, w)) & signs.valid(w, 1);
     if (axis == 1) return j + 1 < signs.dims[1] ? row[w] ^ signs.row(j + 1, k)[w] : 0;
     return k + 1 < signs.dims[2] ? row[w] ^ signs.row(j, k + 1)[w] : 0;
 }
@@ -41,22 +43,42 @@ double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, dou
     return crossing(low[0], low[samples.step(axis)], isovalue);
 }
 
+// Writes the vertex on that edge, and returns its end.
+template <class Sample, class Coordinate>
+Coordinate* write_vertex(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
+                         std::size_t k, Coordinate* out) {
+    const double pad = static_cast<double>(signs.pad);
+    double place[3] = {static_cast<double>(i) - pad, static_cast<double>(j) - pad, static_cast<double>(k) - pad};
+    place[axis] += edge_crossing(samples, signs, isovalue, axis, i, j, k);
+    for (int a = 0; a < 3; ++a) *out++ = static_cast<Coordinate>(place[a]);
+    return out;
+}
+
 // Writes the vertices of row (j, k) in order, from `out` on, and returns the end: those of the edges along each axis
 // whose bits `edges(axis, w)` gives.
 template <class Sample, class Coordinate, class Edges>
 Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
                                std::size_t k, Coordinate* out, const Edges& edges) {
-    const double pad = static_cast<double>(signs.pad);
-    for (int axis = 0; axis < 3; ++axis) {
+    struct Word {
+        int axis;
+        std::size_t first;
+    };
+    SetBits<Word, 32> found;
+    const auto write = [&] {
+        found.visit([&](const Word& word, int bit) {
+            out = write_vertex(samples, signs, isovalue, word.axis, word.first + static_cast<std::size_t>(bit), j, k, out);
+        });
+    };
+    const auto find = [&](auto axis) {
         for (std::size_t w = 0; w < signs.words; ++w) {
-            for (std::uint64_t left = edges(axis, w); left != 0; left &= left - 1) {
-                const std::size_t i = 64 * w + static_cast<std::size_t>(std::countr_zero(left));
-                double place[3] = {static_cast<double>(i) - pad, static_cast<double>(j) - pad, static_cast<double>(k) - pad};
-                place[axis] += edge_crossing(samples, signs, isovalue, axis, i, j, k);
-                for (int a = 0; a < 3; ++a) *out++ = static_cast<Coordinate>(place[a]);
-            }
+            found.add(edges(axis, w), {axis, 64 * w});
+            if (found.full()) write();
         }
-    }
+    };
+    find(std::integral_constant<int, 0>{});
+    find(std::integral_constant<int, 1>{});
+    find(std::integral_constant<int, 2>{});
+    write();
     return out;
 }
 
@@ -64,7 +86,7 @@ template <class Sample, class Coordinate>
 Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
                                std::size_t k, Coordinate* out) {
     return write_row_vertices(samples, signs, isovalue, j, k, out,
-                              [&](int axis, std::size_t w) { return crossed_edges(signs, axis, j, k, w); });
+                              [&](auto axis, std::size_t w) { return crossed_edges(signs, axis, j, k, w); });
 }
 
 }  // namespace isocore

@@ -47,6 +47,7 @@ struct LaneRegister<float> {
     static Type not_above(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static Type equal(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
     static Type both(Type a, Type b) { return _mm256_and_ps(a, b); }
+    static Type either(Type a, Type b) { return _mm256_or_ps(a, b); }
     static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_ps(b, a, mask); }
     static bool any(Type mask) { return _mm256_movemask_ps(mask) != 0; }
     static unsigned bits(Type mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
@@ -70,6 +71,7 @@ struct LaneRegister<double> {
     static Type not_above(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
     static Type equal(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
     static Type both(Type a, Type b) { return _mm256_and_pd(a, b); }
+    static Type either(Type a, Type b) { return _mm256_or_pd(a, b); }
     static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_pd(b, a, mask); }
     static bool any(Type mask) { return _mm256_movemask_pd(mask) != 0; }
 };
@@ -98,6 +100,7 @@ struct LaneRegister {
     static Type not_above(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] <= b[n]); }); }
     static Type equal(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] == b[n]); }); }
     static Type both(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
+    static Type either(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] + b[n] > 0); }); }
     static Type choose(const Type& mask, const Type& a, const Type& b) {
         return each([&](std::size_t n) { return mask[n] != 0 ? a[n] : b[n]; });
     }
@@ -123,6 +126,7 @@ struct LaneMask {
     using Register = LaneRegister<T>;
     typename Register::Type lanes;
     friend LaneMask operator&(const LaneMask& a, const LaneMask& b) { return {Register::both(a.lanes, b.lanes)}; }
+    friend LaneMask operator|(const LaneMask& a, const LaneMask& b) { return {Register::either(a.lanes, b.lanes)}; }
     bool any() const { return Register::any(lanes); }
     unsigned bits() const { return Register::bits(lanes); }
 };

@@ -88,7 +88,8 @@ SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool pa
     const std::size_t pad = padded ? 1 : 0;
     const Dims dims{samples.dims[0] + 2 * pad, samples.dims[1] + 2 * pad, samples.dims[2] + 2 * pad};
     SignGrid grid{dims, pad, (dims[0] + 63) / 64, {}};
-    grid.bits.resize(grid.words * dims[1] * dims[2]);
+    grid.bits.resize(grid.words * dims[1] * dims[2] + 1);
+    grid.bits.back() = 0;
     const Inside<Sample> inside(isovalue, below);
     const std::size_t plane = grid.words * dims[1];
     if (inside.nothing) {

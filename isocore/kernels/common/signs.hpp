@@ -4,10 +4,12 @@
 // (i, j, k) is the volume's (i - 1, j - 1, k - 1).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "common/array.hpp"
+#include "common/bit_fields.hpp"
 #include "common/grid.hpp"
 
 namespace isocore {
@@ -16,15 +18,14 @@ struct SignGrid {
     Dims dims;          // samples per axis, padding included
     std::size_t pad;    // 0 or 1
     std::size_t words;  // per row
-    Array<std::uint64_t> bits;
+    Array<std::uint64_t> bits;  // and a word more, so that what follows a row's last word may be read
 
     const std::uint64_t* row(std::size_t j, std::size_t k) const { return bits.data() + words * (j + dims[1] * k); }
     bool at(std::size_t i, std::size_t j, std::size_t k) const { return row(j, k)[i / 64] >> (i % 64) & 1; }
     // Which bits of word w belong to samples (or, with cells = 1, to cells) of a row.
     std::uint64_t valid(std::size_t w, std::size_t cells = 0) const {
-        const std::size_t count = dims[0] - cells;
-        if (count >= 64 * (w + 1)) return ~std::uint64_t{0};
-        return count > 64 * w ? (std::uint64_t{1} << (count - 64 * w)) - 1 : 0;
+        const std::size_t count = dims[0] - cells, before = std::min(count, 64 * w);
+        return lowest_bits(std::min<std::size_t>(count - before, 64));
     }
 };
 
@@ -33,9 +34,8 @@ struct SignGrid {
 template <class Sample>
 SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges = nullptr);
 
-// The row moved by one sample towards 0, so that bit i tells of sample i + 1.
-inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w, std::size_t words) {
-    return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
-}
+// The row moved by one sample towards 0, so that bit i tells of sample i + 1. What is beyond the row's last sample tells
+// nothing.
+inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w) { return row[w] >> 1 | row[w + 1] << 63; }
 
 }  // namespace isocore
