@@ -78,11 +78,11 @@ inline std::array<std::uint32_t, 3> count_vertices(const SignGrid& signs, const 
 }
 
 // How many triangles a bar draws at most: a loop of n vertices gives n - 2, and a vertex lies on at most four boxes,
-// two of one bar if it lies on the bar's side, and one on the bar's edge. Never less than it was before.
+// two of one bar if it lies on the bar's side, and one on the bar's edge. Never less than it was before, and looked at
+// only where bars are stale.
 inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& bars) {
     const std::size_t size = bars.block_size, last_j = signs.dims[1] - 1, last_k = signs.dims[2] - 1;
-    std::size_t next = 0;
-    for (std::size_t bar = 0; bar < bars.bars.size(); ++bar) {
+    const auto corners_in = [&](std::size_t bar) {
         const std::size_t j0 = size * (bar % bars.blocks[1]), j1 = std::min(j0 + size, last_j);
         const std::size_t k0 = size * (bar / bars.blocks[1]), k1 = std::min(k0 + size, last_k);
         std::size_t corners = 0;
@@ -96,8 +96,12 @@ inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& b
                 if (k < k1) corners += counts[2] * 2 * sides_j;
             }
         }
+        return corners;
+    };
+    std::size_t next = 0;
+    for (std::size_t bar = 0; bar < bars.bars.size(); ++bar) {
         Bar& here = bars.bars[bar];
-        here.capacity = std::max(here.capacity, corners - 2 * count_highrices(here));
+        if (here.stale) here.capacity = std::max(here.capacity, corners_in(bar) - 2 * count_highrices(here));
         here.first_triangle = next;
         next += here.capacity;
     }

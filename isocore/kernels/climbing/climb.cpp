@@ -17,6 +17,7 @@
 #include "common/gaps.hpp"
 #include "common/parallel.hpp"
 #include "common/sample_types.hpp"
+#include "common/set_bits.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -32,19 +33,28 @@ class Gatherer final : public Judge {
           isovalue_(options.isovalue) {}
 
     void gather(const Site& site, Clouds& clouds) const override {
+        struct Row {
+            int axis, j, k;
+        };
+        SetBits<Row, 64> found;
+        const auto add = [&] {
+            found.visit([&](const Row& row, int i) {
+                const Place at{i, row.j, row.k};
+                const auto whole = [&](std::size_t a) { return site.origin[a] + static_cast<std::size_t>(at[a]); };
+                float place[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+                place[row.axis] += static_cast<float>(edge_crossing(samples_, signs_, isovalue_, row.axis, whole(0), whole(1), whole(2)));
+                clouds.add({place[0] * scale[0], place[1] * scale[1], place[2] * scale[2]});
+            });
+        };
         for (int k = 0; k <= site.cells[2]; ++k) {
             for (int j = 0; j <= site.cells[1]; ++j) {
                 for (int axis = 0; axis < 3; ++axis) {
-                    for (std::uint64_t left = site.row(j, k).crossed[static_cast<std::size_t>(axis)]; left; left &= left - 1) {
-                        const Place at{std::countr_zero(left), j, k};
-                        const auto whole = [&](std::size_t a) { return site.origin[a] + static_cast<std::size_t>(at[a]); };
-                        float place[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-                        place[axis] += static_cast<float>(edge_crossing(samples_, signs_, isovalue_, axis, whole(0), whole(1), whole(2)));
-                        clouds.add({place[0] * scale[0], place[1] * scale[1], place[2] * scale[2]});
-                    }
+                    found.add(site.row(j, k).crossed[static_cast<std::size_t>(axis)], {axis, j, k});
+                    if (found.full()) add();
                 }
             }
         }
+        add();
     }
 
   private:
@@ -75,14 +85,15 @@ class Climb {
 
     void number_and_place_vertices() {
         const std::size_t rows = signs_.dims[1], planes = signs_.dims[2];
-        mesh_.vertices = {};  // all are written anew: never room for old and new ones at once
-        mesh_.vertices.resize(3 * layout_.number(options_.threads));
+        const std::size_t vertices = layout_.number(options_.threads);
+        mesh_.vertices.reserve(3 * (vertices + vertices / kLateShare));
+        mesh_.vertices.resize(3 * vertices);
         parallel_for(options_.threads, planes, [&](std::size_t k) {
             for (std::size_t j = 0; j < rows; ++j) {
                 if (layout_.vertices_in(j, k) == 0) continue;
                 std::size_t crossing = layout_.first_crossing(j, k);
                 write_row_vertices(samples_, signs_, options_.isovalue, j, k, mesh_.vertices.data() + 3 * std::size_t{layout_.first_vertex(j, k)},
-                                   [&](int axis, std::size_t w) {
+                                   [&](auto axis, std::size_t w) {
                                        const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
                                        const std::size_t first = crossing;
                                        crossing += static_cast<std::size_t>(std::popcount(crossed));
@@ -104,22 +115,13 @@ class Climb {
     bool split() {
         const std::vector<LateBox> late = split_broken(signs_, bars_);
         if (late.empty()) return false;
-        const std::vector<LateVertex> inserted = keep_late(signs_, late, options_.block_size, layout_);
-        number_and_place_vertices();
-        std::vector<std::size_t> numbers;
-        for (const auto& [crossing, j, k] : inserted) numbers.push_back(layout_.vertex(crossing, j, k));
-        const Renumbering renumbered(std::move(numbers));
+        insert_vertices(keep_late(signs_, late, options_.block_size, layout_));
 
         std::vector<std::size_t> before;
         for (const Bar& bar : bars_.bars) before.push_back(bar.first_triangle);
         bound_triangles(signs_, layout_, bars_);
         mesh_.triangles.resize(3 * bars_.triangles_at_most);
         move_triangles(before, bars_, mesh_.triangles);
-        for_bars([&](std::size_t, Bar& bar) {
-            if (bar.stale) return;
-            std::int32_t* const first = mesh_.triangles.data() + 3 * bar.first_triangle;
-            std::transform(first, first + 3 * bar.triangles, first, renumbered);
-        });
         draw_stale();
         return true;
     }
@@ -132,7 +134,20 @@ class Climb {
     }
 
   private:
-    // Room is left for so large a share of triangles that late halvings may add: growing would need room twice.
+    void insert_vertices(std::vector<LateVertex> late) {
+        layout_.number(options_.threads);
+        for (LateVertex& vertex : late) vertex.vertex = layout_.vertex(vertex.crossing, vertex.at[1], vertex.at[2]);
+        make_room(late, mesh_.vertices);
+        for (const LateVertex& vertex : late) {
+            const auto& [i, j, k] = vertex.at;
+            write_vertex(samples_, signs_, options_.isovalue, vertex.axis, i, j, k, mesh_.vertices.data() + 3 * vertex.vertex);
+        }
+        for_bars([&](std::size_t, Bar& bar) {
+            if (!bar.stale) renumber(late, {mesh_.triangles.data() + 3 * bar.first_triangle, 3 * bar.triangles});
+        });
+    }
+
+    // Room is left for so large a share of what late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
     template <class Work>

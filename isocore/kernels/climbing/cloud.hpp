@@ -52,11 +52,9 @@ class Clouds {
         Cloud out;
         out.size = top_ - start_;
         for (std::size_t a = 0; a < 3; ++a) out.axes[a] = places_[a].data() + start_;
-        for (; (top_ - start_) % kLanes<float> != 0; ++top_) {
-            for (auto& axis : places_) axis[top_] = std::numeric_limits<float>::infinity();
-        }
-        out.lanes = top_ - start_;
-        start_ = top_;
+        for (auto& axis : places_) Numbers(std::numeric_limits<float>::infinity()).store(axis.data() + top_);
+        out.lanes = (out.size + kLanes<float> - 1) / kLanes<float> * kLanes<float>;
+        start_ = top_ = start_ + out.lanes;
         return out;
     }
     std::size_t top() const { return top_; }

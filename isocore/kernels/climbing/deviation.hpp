@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "climbing/climb.hpp"
 #include "climbing/vectors.hpp"
-#include "common/array.hpp"
 #include "common/lanes.hpp"
 
 namespace isocore::climbing {
@@ -20,88 +21,87 @@ inline void add(Deviation& sum, const Deviation& other) {
     sum.squares += other.squares;
 }
 
-// The triangles of a box, prepared for many points.
+// Adds one distance, given squared, and returns it.
+inline double add(Deviation& sum, double squared) {
+    const double distance = std::sqrt(squared);
+    sum.max = std::max(sum.max, distance);
+    sum.sum += distance;
+    sum.squares += squared;
+    return distance;
+}
+
+// The triangles of a box, as many at once as there are lanes.
 class Facets {
   public:
+    // corner(t, c) is corner c of triangle t.
+    template <class Corner>
+    void take(std::size_t count, const Corner& corner) {
+        used_ = (count + kLanes<double> - 1) / kLanes<double>;
+        if (groups_.size() < used_) groups_.resize(2 * used_);
+        for (std::size_t n = 0; n < used_ * kLanes<double>; ++n) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Point place = corner(n < count ? n : 0, c);  // lanes that are left over take the first one
+                for (std::size_t a = 0; a < 3; ++a) groups_[n / kLanes<double>][kCorners + 3 * c + a][n % kLanes<double>] = place[a];
+            }
+        }
+        for (std::size_t g = 0; g < used_; ++g) prepare(groups_[g]);
+    }
+
+    // The squared distance from a point to the nearest triangle; exact but where several lie below it.
+    double squared_distance(const Point& point) const {
+        const Spots p{Numbers(point[0]), Numbers(point[1]), Numbers(point[2])};
+        const Numbers infinity(std::numeric_limits<double>::infinity()), zero(0.0);
+        Numbers best = infinity;
+        for (std::size_t g = 0; g < used_; ++g) {
+            const Group& group = groups_[g];
+            const auto above = (zero <= over(group, kInward, p)) & (zero <= over(group, kInward + 4, p)) & (zero <= over(group, kInward + 8, p));
+            const Numbers height = over(group, kHeight, p);
+            best = least(best, choose(above, height * height * numbers(group, kSquared), infinity));
+        }
+        if ((best < infinity).any()) return least_of(best);
+        for (std::size_t g = 0; g < used_; ++g) best = least(best, to_sides(groups_[g], p));
+        return least_of(best);
+    }
+
+  private:
     using Numbers = Lanes<double>;
     struct Spots {
         Numbers x, y, z;
     };
 
-    void clear() { count_ = 0; }
-    void add(const Point& a, const Point& b, const Point& c) {
-        if (corners_[0].size() < count_ + kLanes<double>) {
-            for (auto& numbers : corners_) numbers.resize(2 * count_ + kLanes<double>);
-            for (auto& numbers : prepared_) numbers.resize(2 * count_ + kLanes<double>);
-        }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            corners_[axis][count_] = a[axis];
-            corners_[3 + axis][count_] = b[axis];
-            corners_[6 + axis][count_] = c[axis];
-        }
-        ++count_;
+    // What is known of a triangle: the planes through it and through its sides, not to scale, its sides and its corners.
+    static constexpr std::size_t kHeight = 0, kSquared = 4, kInward = 5, kAlong = 17, kShortened = 26, kCorners = 29, kNumbers = 38;
+    using Group = std::array<std::array<double, kLanes<double>>, kNumbers>;
+
+    static Numbers numbers(const Group& group, std::size_t what) { return Numbers(group[what].data()); }
+    static Spots spots(const Group& group, std::size_t what) { return {numbers(group, what), numbers(group, what + 1), numbers(group, what + 2)}; }
+    static Numbers over(const Group& group, std::size_t plane, const Spots& p) { return dot(p, spots(group, plane)) + numbers(group, plane + 3); }
+
+    static double least_of(const Numbers& numbers) {
+        const auto each = numbers.each();
+        return *std::min_element(each.begin(), each.end());
     }
 
-    // After the last one was added.
-    void prepare() {
-        for (auto& numbers : corners_) {  // lanes that are not used hold some triangle too
-            for (std::size_t n = count_; n % kLanes<double> != 0; ++n) numbers[n] = numbers[0];
-        }
-        for (std::size_t n = 0; n < count_; n += kLanes<double>) prepare(n);
-    }
+    static Spots minus(const Spots& a, const Spots& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+    static Spots cross(const Spots& a, const Spots& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+    static Numbers dot(const Spots& a, const Spots& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-    // The squared distances from some spots to the nearest triangle; exact but where several lie below a spot.
-    Numbers squared_distances(const Spots& p) const {
-        const Numbers infinity(std::numeric_limits<double>::infinity()), zero(0.0);
-        Numbers best = infinity;
-        for (std::size_t n = 0; n < count_; ++n) {
-            const auto above = (zero <= over(kInward, n, p)) & (zero <= over(kInward + 4, n, p)) & (zero <= over(kInward + 8, n, p));
-            const Numbers height = over(kHeight, n, p);
-            best = least(best, choose(above, height * height * prepared(kSquared, n), infinity));
-        }
-        if (!(best == infinity).any()) return best;
-        Numbers beside = infinity;
-        for (std::size_t n = 0; n < count_; ++n) beside = least(beside, to_sides(n, p));
-        return choose(best == infinity, beside, best);
-    }
-
-  private:
-    // What is prepared of a triangle: the planes through it and through its sides, not to scale, and its sides.
-    static constexpr std::size_t kHeight = 0, kSquared = 4, kInward = 5, kAlong = 17, kShortened = 26, kNumbers = 29;
-
-    Numbers prepared(std::size_t what, std::size_t n) const { return Numbers(prepared_[what][n]); }
-    Numbers over(std::size_t plane, std::size_t n, const Spots& p) const {
-        return p.x * prepared(plane, n) + p.y * prepared(plane + 1, n) + p.z * prepared(plane + 2, n) + prepared(plane + 3, n);
-    }
-
-    Numbers to_sides(std::size_t n, const Spots& p) const {
+    static Numbers to_sides(const Group& group, const Spots& p) {
         const Numbers zero(0.0), one(1.0);
         Numbers best(std::numeric_limits<double>::infinity());
         for (std::size_t side = 0; side < 3; ++side) {
-            const auto corner = [&](std::size_t axis) { return Numbers(corners_[3 * side + axis][n]); };
-            const auto along = [&](std::size_t axis) { return prepared(kAlong + 3 * side + axis, n); };
-            const Spots from{p.x - corner(0), p.y - corner(1), p.z - corner(2)};
-            const Numbers share = (from.x * along(0) + from.y * along(1) + from.z * along(2)) * prepared(kShortened + side, n);
-            const Numbers t = least(greatest(share, zero), one);
-            const Spots off{from.x - t * along(0), from.y - t * along(1), from.z - t * along(2)};
-            best = least(best, off.x * off.x + off.y * off.y + off.z * off.z);
+            const Spots from = minus(p, spots(group, kCorners + 3 * side)), along = spots(group, kAlong + 3 * side);
+            const Numbers t = least(greatest(dot(from, along) * numbers(group, kShortened + side), zero), one);
+            const Spots off = minus(from, {t * along.x, t * along.y, t * along.z});
+            best = least(best, dot(off, off));
         }
         return best;
     }
 
-    // As many triangles as there are lanes, from the n-th on.
-    void prepare(std::size_t n) {
+    // From the corners to all else.
+    static void prepare(Group& group) {
         const Numbers one(1.0), zero(0.0);
-        const auto corner = [&](std::size_t c) {
-            const auto axis = [&](std::size_t a) { return Numbers(corners_[3 * (c % 3) + a].data() + n); };
-            return Spots{axis(0), axis(1), axis(2)};
-        };
-        const auto minus = [](const Spots& a, const Spots& b) { return Spots{a.x - b.x, a.y - b.y, a.z - b.z}; };
-        const auto cross = [](const Spots& a, const Spots& b) {
-            return Spots{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-        };
-        const auto dot = [](const Spots& a, const Spots& b) { return a.x * b.x + a.y * b.y + a.z * b.z; };
-        const auto set = [&](std::size_t what, const Numbers& value) { value.store(prepared_[what].data() + n); };
+        const auto set = [&](std::size_t what, const Numbers& value) { value.store(group[what].data()); };
         const auto set_spots = [&](std::size_t what, const Spots& value) {
             set(what, value.x);
             set(what + 1, value.y);
@@ -111,20 +111,20 @@ class Facets {
             set_spots(what, normal);
             set(what + 3, zero - dot(normal, through));
         };
-        const Spots normal = cross(minus(corner(1), corner(0)), minus(corner(2), corner(0)));
-        set_plane(kHeight, normal, corner(0));
+        const std::array<Spots, 3> corners{spots(group, kCorners), spots(group, kCorners + 3), spots(group, kCorners + 6)};
+        const Spots normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
+        set_plane(kHeight, normal, corners[0]);
         set(kSquared, one / dot(normal, normal));
         for (std::size_t side = 0; side < 3; ++side) {
-            const Spots along = minus(corner(side + 1), corner(side));
+            const Spots along = minus(corners[(side + 1) % 3], corners[side]);
             set_spots(kAlong + 3 * side, along);
-            set_plane(kInward + 4 * side, cross(normal, along), corner(side));
+            set_plane(kInward + 4 * side, cross(normal, along), corners[side]);
             set(kShortened + side, one / dot(along, along));
         }
     }
 
-    std::size_t count_ = 0;
-    std::array<Array<double>, 9> corners_;
-    std::array<Array<double>, kNumbers> prepared_;
+    std::size_t used_ = 0;
+    std::vector<Group> groups_;
 };
 
 }  // namespace isocore::climbing

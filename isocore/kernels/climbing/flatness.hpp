@@ -15,22 +15,23 @@ namespace isocore::climbing {
 
 class Flatness {
   public:
-    using Ring = std::array<Spot, 6>;  // the crossings on a box's edges, in the order of its Rim
+    using Ring = std::array<Spot, 6>;  // the crossings on a box's edges, in the order of its Rim, then the first again
 
     explicit Flatness(double max_error) : max_error_(static_cast<float>(max_error)) {}
 
     // around: all crossings in the closed disk box, and perhaps others.
     bool operator()(const Cloud& around, const Extent& box, const Rim& rim, const Ring& ring) const {
         Spot normal{};
-        for (unsigned n = 2; n < rim.length; ++n) {
+        for (std::size_t n = 2; n < ring.size(); ++n) {
             const Spot part = cross(minus(ring[n - 1], ring[0]), minus(ring[n], ring[0]));
             for (std::size_t a = 0; a < 3; ++a) normal[a] += part[a];
         }
-        return normalise(normal) && in_slab(around, box, ring, rim.length, normal) && near_chords(around, box, ring, rim);
+        return normalise(normal) && in_slab(around, box, ring, normal) && near_chords(around, box, ring, rim);
     }
 
   private:
-    static constexpr float kWorthFitting = 2;  // a slab this many times too thick is hardly ever saved by a better plane
+    // A slab this many times too thick is hardly ever saved by a better plane; nor if its corners alone make it so.
+    static constexpr float kWorthFitting = 1.25f, kHopeless = 2;
 
     static Spot minus(const Spot& a, const Spot& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
     static float dot(const Spot& a, const Spot& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -40,7 +41,8 @@ class Flatness {
     static bool normalise(Spot& a) {
         const float length = std::sqrt(dot(a, a));
         if (!(length > 0)) return false;
-        for (float& x : a) x /= length;
+        const float scale = 1 / length;
+        for (float& x : a) x *= scale;
         return true;
     }
 
@@ -51,14 +53,14 @@ class Flatness {
         }
     }
 
-    bool in_slab(const Cloud& around, const Extent& box, const Ring& ring, unsigned corners, Spot normal) const {
+    bool in_slab(const Cloud& around, const Extent& box, const Ring& ring, Spot normal) const {
         float low = dot(ring[0], normal), high = low;
-        for (unsigned n = 1; n < corners; ++n) {
+        for (std::size_t n = 1; n < ring.size(); ++n) {
             const float height = dot(ring[n], normal);
             low = std::min(low, height);
             high = std::max(high, height);
         }
-        if (high - low > kWorthFitting * max_error_) return false;
+        if (high - low > kHopeless * max_error_) return false;
         const float thickness = width(around, box, normal);
         if (thickness <= max_error_) return true;
         if (thickness > kWorthFitting * max_error_) return false;
@@ -115,36 +117,36 @@ class Flatness {
         return normalise(normal);
     }
 
-    // Does every crossing on a face lie near the line between the two on the face's rim?
+    // Does every crossing on a face lie near the line through the two on the face's rim? (Between those two, as the
+    // iso-lines of a face run one way along both axes.)
     bool near_chords(const Cloud& around, const Extent& box, const Ring& ring, const Rim& rim) const {
         struct Chord {
-            std::size_t axis;
+            const float* across;  // the places along the face's axis
             float side;
-            Spot from, along;
-            float shortened;  // 1 over its squared length
+            Spot normal;  // not to scale
+            float height, limit;
         };
         std::array<Chord, 6> chords;
         for (unsigned n = 0; n < rim.length; ++n) {
-            const std::size_t axis = rim.faces[n] / 2u;
+            const std::size_t axis = rim.faces[n] / 2u, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
             const Spot along = minus(ring[n + 1 < rim.length ? n + 1 : 0], ring[n]);
-            chords[n] = {axis, rim.faces[n] & 1 ? box.high[axis] : box.low[axis], ring[n], along, 1 / dot(along, along)};
+            Spot normal{};
+            normal[u] = -along[v];
+            normal[v] = along[u];
+            const float limit = max_error_ * max_error_ * dot(normal, normal);
+            chords[n] = {around.axes[axis], rim.faces[n] & 1 ? box.high[axis] : box.low[axis], normal, dot(normal, ring[n]), limit};
         }
-        const Numbers zero(0.0f), one(1.0f), bound(max_error_ * max_error_);
+        auto far = Numbers(0.0f) < Numbers(0.0f);
         for (std::size_t n = 0; n < around.lanes; n += kLanes<float>) {
-            const std::array<Numbers, 3> at{Numbers(around.axes[0] + n), Numbers(around.axes[1] + n), Numbers(around.axes[2] + n)};
-            const auto here = within(box, at[0], at[1], at[2]);
+            const Numbers x(around.axes[0] + n), y(around.axes[1] + n), z(around.axes[2] + n);
+            const auto here = within(box, x, y, z);
             for (unsigned c = 0; c < rim.length; ++c) {
-                const Chord& chord = chords[c];
-                const auto on_face = here & (at[chord.axis] == Numbers(chord.side));
-                if (!on_face.any()) continue;
-                std::array<Numbers, 3> off{at[0] - chord.from[0], at[1] - chord.from[1], at[2] - chord.from[2]};
-                const Numbers dot = off[0] * chord.along[0] + off[1] * chord.along[1] + off[2] * chord.along[2];
-                const Numbers t = least(greatest(dot * chord.shortened, zero), one);
-                for (std::size_t a = 0; a < 3; ++a) off[a] = off[a] - t * chord.along[a];
-                if ((on_face & (bound < off[0] * off[0] + off[1] * off[1] + off[2] * off[2])).any()) return false;
+                const auto& [across, side, normal, height, limit] = chords[c];
+                const Numbers off = x * normal[0] + y * normal[1] + z * normal[2] - height;
+                far = far | (here & (Numbers(across + n) == Numbers(side)) & (Numbers(limit) < off * off));
             }
         }
-        return true;
+        return !far.any();
     }
 
     float max_error_;

@@ -44,7 +44,8 @@ inline constexpr std::array<std::uint8_t, 12> kFacesOfEdge = [] {
     return faces;
 }();
 
-// The loop that the surface draws on a disk box: its crossed edges in order, and the face between each and the next.
+// The loop that the surface draws on a disk box: its crossed edges in order, and the face between each and the next. Past
+// its length the first edge is repeated.
 struct Rim {
     std::uint8_t length = 0;
     std::array<std::uint8_t, 6> edges{}, faces{};
@@ -62,6 +63,7 @@ constexpr std::array<Rim, 256> derive_rims() {
             rim.edges[n] = static_cast<std::uint8_t>(here);
             rim.faces[n] = static_cast<std::uint8_t>(cube::shared_face(here, next));
         }
+        for (unsigned n = rim.length; n < rim.edges.size(); ++n) rim.edges[n] = rim.edges[0];
     }
     return rims;
 }

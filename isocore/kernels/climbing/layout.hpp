@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/array.hpp"
+#include "common/bit_fields.hpp"
 #include "common/edge_vertices.hpp"
 #include "common/parallel.hpp"
 
@@ -19,13 +20,14 @@ namespace isocore::climbing {
 
 // Crossings of the edges of row (j, k) along each axis.
 inline std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::size_t j, std::size_t k) {
-    std::array<std::uint32_t, 3> counts{};
-    for (int axis = 0; axis < 3; ++axis) {
-        for (std::size_t w = 0; w < signs.words; ++w) {
-            counts[static_cast<std::size_t>(axis)] += static_cast<std::uint32_t>(std::popcount(crossed_edges(signs, axis, j, k, w)));
-        }
+    std::uint32_t x = 0, y = 0, z = 0;
+    const auto ones = [](std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); };
+    for (std::size_t w = 0; w < signs.words; ++w) {
+        x += ones(crossed_edges(signs, 0, j, k, w));
+        y += ones(crossed_edges(signs, 1, j, k, w));
+        z += ones(crossed_edges(signs, 2, j, k, w));
     }
-    return counts;
+    return {x, y, z};
 }
 
 class Layout {
@@ -57,8 +59,7 @@ class Layout {
     // Keeps those of some crossed edges that are cut, if the first of them is the crossing `first`.
     void keep(std::uint64_t crossed, std::uint64_t cut, std::size_t first) {
         if ((crossed & cut) == 0) return;
-        std::uint64_t bits = 0;
-        for (std::uint64_t bit = 1; crossed; crossed &= crossed - 1, bit <<= 1) bits |= crossed & -crossed & cut ? bit : 0;
+        const std::uint64_t bits = extract_bits(cut, crossed);
         add(first / 64, bits << first % 64);
         if (first % 64 != 0) add(first / 64 + 1, bits >> (64 - first % 64));
     }
@@ -74,12 +75,9 @@ class Layout {
 
     // Those of some crossed edges that are kept, if the first of them is the crossing `first`.
     std::uint64_t kept(std::uint64_t crossed, std::size_t first) const {
-        if (crossed == 0) return 0;
         std::uint64_t bits = kept_[first / 64].load(std::memory_order_relaxed) >> first % 64;
         if (first % 64 != 0) bits |= kept_[first / 64 + 1].load(std::memory_order_relaxed) << (64 - first % 64);
-        std::uint64_t out = 0;
-        for (; crossed; crossed &= crossed - 1, bits >>= 1) out |= crossed & -crossed & -(bits & 1);
-        return out;
+        return deposit_bits(bits, crossed);
     }
 
     // Numbers the vertices anew; returns how many there are.

@@ -13,7 +13,7 @@
 #include "climbing/cloud.hpp"
 #include "climbing/cuts.hpp"
 #include "climbing/flatness.hpp"
-#include "climbing/padi.hpp"
+#include "climbing/rim.hpp"
 #include "climbing/survey.hpp"
 
 namespace isocore::climbing {
@@ -84,7 +84,12 @@ class Partition {
     // around: the crossings of the box, and perhaps others.
     int price(const Box& box, const Cloud& around) {
         const int price = survey_price(box);
-        if (price != kAccepted || !judge_ || is_cell(box)) return price;
+        return price == kAccepted && judge_ ? judged_price(box, around) : price;
+    }
+
+    // Of a box that may be a highrice otherwise.
+    int judged_price(const Box& box, const Cloud& around) {
+        if (is_cell(box)) return kAccepted;
         // A box is met on many ways down, so what is found out is kept.
         const auto [x, y, z] = box;
         const Word bit = Word{1} << DikeBits<N>::bit(x);
@@ -95,16 +100,30 @@ class Partition {
         return passed_[y][z] & bit ? kAccepted : kSplit;
     }
 
-    int survey_price(const Box& box) const {
+    static int survey_price(const typename Survey<N>::Verdicts& verdicts, int bit) {
+        const auto is = [&](Word boxes) { return static_cast<int>(boxes >> bit & 1); };
+        return kSplit - (kSplit - kNothing) * is(verdicts.nothing) - (kSplit - kAccepted) * is(verdicts.highrice);
+    }
+    int survey_price(const Box& box) const { return survey_price(survey_.verdicts(box[1], box[2]), DikeBits<N>::bit(box[0])); }
+
+    // The prices of the halves along each axis; of the box itself twice where it is one cell thick.
+    using Prices = std::array<std::array<int, 2>, 3>;
+    Prices survey_halves(const Box& box) const {
         const auto [x, y, z] = box;
-        return survey_.nothing(x, y, z) ? kNothing : survey_.may_be_highrice(x, y, z) ? kAccepted : kSplit;
+        const auto lower = [](Label label) { return label << !Dikes::is_unit(label); };
+        const auto upper = [](Label label) { return label << !Dikes::is_unit(label) | Label{!Dikes::is_unit(label)}; };
+        const int bit = DikeBits<N>::bit(x);
+        const auto& here = survey_.verdicts(y, z);
+        return {{{survey_price(here, DikeBits<N>::bit(lower(x))), survey_price(here, DikeBits<N>::bit(upper(x)))},
+                 {survey_price(survey_.verdicts(lower(y), z), bit), survey_price(survey_.verdicts(upper(y), z), bit)},
+                 {survey_price(survey_.verdicts(y, lower(z)), bit), survey_price(survey_.verdicts(y, upper(z)), bit)}}};
     }
 
     bool is_flat(const Box& box, const Cloud& around) const {
         const HighRice rice = high_rice(box);
         const Rim& rim = kRims[site_.corners(rice)];
         Flatness::Ring ring;
-        for (unsigned n = 0; n < rim.length; ++n) {
+        for (std::size_t n = 0; n < ring.size(); ++n) {  // always all, which is cheaper than to guess how many
             const RimEdge edge = box_crossing(site_, rice, rim.edges[n]);
             const auto axis = static_cast<std::size_t>(edge.axis);
             const std::uint64_t before = site_.row(edge.at[1], edge.at[2]).crossed[axis] & ((std::uint64_t{1} << edge.at[0]) - 1);
@@ -114,20 +133,24 @@ class Partition {
     }
 
     void settle(const Box& box, int found, const Cloud& around, std::vector<HighRice>& boxes) {
-        if (found == kNothing) return;
-        if (found == kAccepted) {
+        if (found == kSplit) {
+            split(box, around, boxes);
+        } else if (found == kAccepted) {
             if (is_cell(box)) cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
             else boxes.push_back(high_rice(box));
-            return;
         }
+    }
+
+    void split(const Box& box, const Cloud& around, std::vector<HighRice>& boxes) {
         const std::size_t top = clouds_.top();
-        Cloud here = around;
-        if (judge_ && around.size > kWorthFiltering) here = clouds_.push(around, extent(high_rice(box)));
-        for (const Box& half : halves(box, best_axis(box, here))) settle(half, price(half, here), here, boxes);
+        const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(high_rice(box))) : around;
+        const Choice choice = best_axis(box, here);
+        const auto parts = halves(box, choice.axis);
+        for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.found[n], here, boxes);
         clouds_.pop(top);
     }
 
-    static bool is_cell(const Box& box) { return Dikes::is_unit(box[0]) && Dikes::is_unit(box[1]) && Dikes::is_unit(box[2]); }
+    static bool is_cell(const Box& box) { return Dikes::is_unit(std::min({box[0], box[1], box[2]})); }
     static std::array<Box, 2> halves(const Box& box, std::size_t axis) {
         std::array<Box, 2> out{box, box};
         out[0][axis] = 2 * box[axis];
@@ -135,55 +158,56 @@ class Partition {
         return out;
     }
 
-    static std::array<std::size_t, 3> longest_first(const Box& box) {
-        std::array<std::size_t, 3> axes{0, 1, 2};
-        const auto put_in_order = [&](std::size_t n, std::size_t m) {
-            if (Dikes::length(box[axes[n]]) < Dikes::length(box[axes[m]])) std::swap(axes[n], axes[m]);
-        };
-        put_in_order(0, 1);
-        put_in_order(1, 2);
-        put_in_order(0, 1);
-        return axes;
-    }
+    // An axis and what becomes of the halves along it.
+    struct Choice {
+        std::size_t axis;
+        std::array<int, 2> found;
+    };
 
     // The axis whose halves come off best, looking one halving further where they must be split again; the longest of
     // several.
-    std::size_t best_axis(const Box& box, const Cloud& around) {
-        const auto axes = longest_first(box);
-        std::size_t best = axes[0];
-        int least = std::numeric_limits<int>::max();
-        const bool look_further = !judge_ && Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook;
-        for (const std::size_t axis : axes) {
-            if (Dikes::is_unit(box[axis])) break;
-            const auto parts = halves(box, axis);
-            int cost = 0;
-            if (look_further) {
-                for (const Box& half : parts) {
-                    const int found = survey_price(half);
-                    cost += found == kSplit ? cost_of_halves(half) : found;
-                }
-            } else {
-                // A judge can only raise prices, so many axes need not be brought before it.
-                cost = survey_price(parts[0]) + survey_price(parts[1]);
-                for (const Box& half : parts) {
-                    if (judge_ && 64 * cost - Dikes::length(box[axis]) < least) cost += price(half, around) - survey_price(half);
+    Choice best_axis(const Box& box, const Cloud& around) {
+        Prices prices = survey_halves(box);
+        std::array<int, 3> ranks;  // least is best
+        for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
+        const auto best = [&] { return static_cast<std::size_t>(std::min({ranks[0], ranks[1], ranks[2]}) & 3); };
+        if (!judge_) {
+            if (Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (!Dikes::is_unit(box[axis])) ranks[axis] = rank(box, axis, price_further(halves(box, axis), prices[axis]));
                 }
             }
-            cost = 64 * cost - Dikes::length(box[axis]);
-            if (cost < least) {
-                least = cost;
-                best = axis;
-            }
+            return {best(), prices[best()]};
         }
-        return best;
+        // A judge can only raise prices, so no half need be brought before it until its axis is the best.
+        for (std::array<std::size_t, 3> judged{};;) {
+            const std::size_t axis = best();
+            if (judged[axis] == 2) return {axis, prices[axis]};
+            const std::size_t n = judged[axis]++;
+            if (prices[axis][n] != kAccepted) continue;
+            prices[axis][n] = judged_price(halves(box, axis)[n], around);
+            ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
+        }
+    }
+
+    int price_further(const std::array<Box, 2>& parts, const std::array<int, 2>& prices) const {
+        int sum = 0;
+        for (std::size_t n = 0; n < parts.size(); ++n) sum += prices[n] == kSplit ? cost_of_halves(parts[n]) : prices[n];
+        return sum;
+    }
+
+    static int rank(const Box& box, std::size_t axis, int cost) {
+        constexpr int kMoreThanAnyLength = 64, kMoreThanAnyCost = 1 << 10;
+        const int thick = kMoreThanAnyCost * static_cast<int>(Dikes::is_unit(box[axis])) + cost;
+        return 4 * (kMoreThanAnyLength * thick - Dikes::length(box[axis])) + static_cast<int>(axis);
     }
 
     int cost_of_halves(const Box& box) const {
+        const Prices prices = survey_halves(box);
         int least = std::numeric_limits<int>::max();
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (Dikes::is_unit(box[axis])) continue;
-            const auto parts = halves(box, axis);
-            least = std::min(least, survey_price(parts[0]) + survey_price(parts[1]));
+            const int thick = Dikes::is_unit(box[axis]) ? 4 * kSplit : 0;
+            least = std::min(least, prices[axis][0] + prices[axis][1] + thick);
         }
         return least;
     }

@@ -11,7 +11,7 @@
 
 #include "climbing/bars.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/padi.hpp"
+#include "climbing/rim.hpp"
 #include "climbing/site.hpp"
 #include "common/array.hpp"
 
@@ -79,28 +79,35 @@ inline void split_bar(const SignGrid& signs, const Bars& bars, std::size_t numbe
     bar.broken.clear();
 }
 
-// Halves the boxes that broke the bound, and returns their parts; their bars and those around are stale then.
+// Halves the boxes that broke the bound, and returns their parts; the bars that these touch are stale then.
 inline std::vector<LateBox> split_broken(const SignGrid& signs, Bars& bars) {
     std::vector<LateBox> late;
     for (std::size_t n = 0; n < bars.bars.size(); ++n) {
-        if (bars.bars[n].broken.empty()) continue;
-        split_bar(signs, bars, n, bars.bars[n], late);
-        const std::size_t y = n % bars.blocks[1], z = n / bars.blocks[1];
-        for (std::size_t near_z = z ? z - 1 : 0; near_z < std::min(z + 2, bars.blocks[2]); ++near_z) {
-            for (std::size_t near_y = y ? y - 1 : 0; near_y < std::min(y + 2, bars.blocks[1]); ++near_y) {
-                bars.bars[near_y + bars.blocks[1] * near_z].stale = true;
-            }
+        if (!bars.bars[n].broken.empty()) split_bar(signs, bars, n, bars.bars[n], late);
+    }
+    for (const auto& [origin, box] : late) {
+        // A sample between two bars lies on both.
+        const auto touched = [&](std::size_t a) {
+            const std::size_t low = origin[a] + box.low[a], high = origin[a] + box.high[a];
+            return std::array{(low - std::min<std::size_t>(low, 1)) / bars.block_size, std::min(high / bars.block_size, bars.blocks[a] - 1)};
+        };
+        const auto y = touched(1), z = touched(2);
+        for (std::size_t k = z[0]; k <= z[1]; ++k) {
+            for (std::size_t j = y[0]; j <= y[1]; ++j) bars.bars[j + bars.blocks[1] * k].stale = true;
         }
     }
     return late;
 }
 
-// The numbers of the crossings that late boxes make vertices of, each with its row.
+// A crossing that a late box makes a vertex of: its number, its grid edge, and that vertex's number.
 struct LateVertex {
-    std::size_t crossing, j, k;
+    std::size_t crossing;
+    int axis;
+    Dims at;
+    std::size_t vertex = 0;
 };
 
-// Keeps the crossings on the edges of late boxes; returns those that were not kept before.
+// Keeps the crossings on the edges of late boxes; returns those that were not kept before, in the order of their numbers.
 inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vector<LateBox>& late, int block_size, Layout& layout) {
     std::vector<LateVertex> out;
     const auto site = std::make_unique<Site>(block_size);
@@ -108,29 +115,45 @@ inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vecto
         site->begin(signs, layout, origin[1], origin[2]);
         for (std::size_t x = 0; x <= origin[0]; x += static_cast<std::size_t>(block_size)) site->load(x);
         site->lay_columns();
-        keep_edges(*site, box, layout, [&](std::size_t crossing, const Place& at) {
-            out.push_back({crossing, origin[1] + static_cast<std::size_t>(at[1]), origin[2] + static_cast<std::size_t>(at[2])});
+        keep_edges(*site, box, layout, [&](std::size_t crossing, const RimEdge& edge) {
+            LateVertex& vertex = out.emplace_back(LateVertex{crossing, edge.axis, origin});
+            for (std::size_t a = 0; a < 3; ++a) vertex.at[a] += static_cast<std::size_t>(edge.at[a]);
         });
     }
+    std::sort(out.begin(), out.end(), [](const LateVertex& a, const LateVertex& b) { return a.crossing < b.crossing; });
     return out;
 }
 
-// The numbers that vertices had before a few were inserted among them, and have now.
-class Renumbering {
-  public:
-    // inserted: the new numbers of the inserted ones.
-    explicit Renumbering(std::vector<std::size_t> inserted) : first_moved_(std::move(inserted)) {
-        std::sort(first_moved_.begin(), first_moved_.end());
-        for (std::size_t n = 0; n < first_moved_.size(); ++n) first_moved_[n] -= n;
+// Makes room for late vertices, which know their numbers, among those there are.
+template <class Coordinate>
+void make_room(const std::vector<LateVertex>& late, Array<Coordinate>& vertices) {
+    auto end = static_cast<std::ptrdiff_t>(vertices.size());
+    vertices.resize(vertices.size() + 3 * late.size());
+    auto moved = static_cast<std::ptrdiff_t>(3 * late.size());
+    for (std::size_t n = late.size(); n-- > 0; moved -= 3) {
+        const auto from = static_cast<std::ptrdiff_t>(3 * (late[n].vertex - n));
+        std::move_backward(vertices.begin() + from, vertices.begin() + end, vertices.begin() + end + moved);
+        end = from;
     }
-    std::int32_t operator()(std::int32_t before) const {
-        const auto past = std::upper_bound(first_moved_.begin(), first_moved_.end(), static_cast<std::size_t>(before));
-        return before + static_cast<std::int32_t>(past - first_moved_.begin());
-    }
+}
 
-  private:
-    std::vector<std::size_t> first_moved_;
-};
+// Turns the numbers that vertices had before into those that they have among the late ones.
+inline void renumber(const std::vector<LateVertex>& late, std::span<std::int32_t> vertices) {
+    constexpr std::size_t kFew = 32;
+    if (late.size() <= kFew) {
+        // One after the other, last one first, which vectorises.
+        for (std::size_t n = late.size(); n-- > 0;) {
+            const auto first_moved = static_cast<std::int32_t>(late[n].vertex - n);
+            for (std::int32_t& vertex : vertices) vertex += vertex >= first_moved;
+        }
+        return;
+    }
+    std::vector<std::int32_t> first_moved;
+    for (const LateVertex& vertex : late) first_moved.push_back(static_cast<std::int32_t>(vertex.vertex - first_moved.size()));
+    for (std::int32_t& vertex : vertices) {
+        vertex += static_cast<std::int32_t>(std::upper_bound(first_moved.begin(), first_moved.end(), vertex) - first_moved.begin());
+    }
+}
 
 // Moves the triangles of all bars to where `bars` wants them now; `before` tells where they were, never further up.
 inline void move_triangles(const std::vector<std::size_t>& before, const Bars& bars, Array<std::int32_t>& triangles) {

@@ -53,9 +53,11 @@ class Survey {
         for (Label y = 1; y < 2 * N; ++y) judge(y, block.cells);
     }
 
-    // Boxes by the labels of their dikes: does nothing cross it, and may it be one highrice?
-    bool nothing(Label x, Label y, Label z) const { return nothing_[y][z] >> Bits::bit(x) & 1; }
-    bool may_be_highrice(Label x, Label y, Label z) const { return highrice_[y][z] >> Bits::bit(x) & 1; }
+    // What is known of all boxes over two dikes, a bit for each dike along x.
+    struct Verdicts {
+        Word nothing, highrice;  // does nothing cross the box, and may it be one highrice?
+    };
+    const Verdicts& verdicts(Label y, Label z) const { return verdicts_[y][z]; }
 
   private:
     // Marks of samples, or of steps from a sample to the next, by which of the two they are along y and z.
@@ -193,11 +195,10 @@ class Survey {
         const auto &low = corners_[static_cast<std::size_t>(Dike<N>::start(y))], &high = corners_[static_cast<std::size_t>(Dike<N>::end(y))];
         for (std::size_t z = 1; z < 2 * N; ++z) {
             const BoxCorners<Word> box({low[0][z], low[1][z], high[0][z], high[1][z], low[2][z], low[3][z], high[2][z], high[3][z]});
-            nothing_[y][z] = ~(box.crossed | bad[z]);
-            highrice_[y][z] = box.disk & ~bad[z] & ~both_ways[z];
+            verdicts_[y][z] = {~(box.crossed | bad[z]), box.disk & ~bad[z] & ~both_ways[z]};
         }
         if (Dike<N>::is_unit(y)) {
-            for (std::size_t z = N; z < 2 * N; ++z) highrice_[y][z] |= ~nothing_[y][z] & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
+            for (std::size_t z = N; z < 2 * N; ++z) verdicts_[y][z].highrice |= ~verdicts_[y][z].nothing & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
         }
         set_beyond(y, cells);
     }
@@ -209,8 +210,8 @@ class Survey {
         for (Label z = 1; z < 2 * N; ++z) {
             const bool all = Dike<N>::start(y) >= cells[1] || Dike<N>::start(z) >= cells[2];
             const Word beyond = all ? ~Word{0} : x_beyond;
-            nothing_[y][z] |= beyond;
-            highrice_[y][z] &= ~beyond;
+            verdicts_[y][z].nothing |= beyond;
+            verdicts_[y][z].highrice &= ~beyond;
         }
     }
 
@@ -218,7 +219,7 @@ class Survey {
     std::array<Line, 2 * N> again_y_;                            // ligns along y crossed several times: [y][k]
     std::array<DikeLine, 2 * N + 1> again_z_;                    // along z: [N + j][z], then [y][z]
     std::array<std::array<DikeLine, 4>, N + 1> corners_;         // [j][start or end along x, then along z][z]
-    std::array<DikeLine, 2 * N> nothing_, highrice_;             // [y][z]
+    std::array<std::array<Verdicts, 2 * N>, 2 * N> verdicts_;    // [y][z]
     bool one_way_, plain_;  // are all ligns along some axis crossed in one direction, is no cell face alternating?
 };
 

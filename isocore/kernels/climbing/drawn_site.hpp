@@ -1,0 +1,79 @@
+// drawn_site.hpp - A site once it is known which crossings are vertices, of its own boxes or of its neighbours'.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "climbing/site.hpp"
+
+namespace isocore::climbing {
+
+class DrawnSite : public Site {
+  public:
+    // Edges that start in half a row, at samples 0 ... 20 or 16 ... 36, side by side: those along x, along y, along z. A
+    // box lies in either half of a row, unless it is longer than a half.
+    using Half = std::uint64_t;
+    static constexpr int kWindow = 21, kHalf = 16;
+
+    // What becomes of the crossed edges that start in a row.
+    struct Cut {
+        std::array<std::uint64_t, 3> kept;          // along each axis
+        std::array<std::uint32_t, 3> first_vertex;  // the numbers of the first of them
+        std::array<Half, 2> kept_halves, dropped_halves;
+    };
+
+    using Site::Site;
+
+    void begin(const SignGrid& signs, const Layout& layout, std::size_t y, std::size_t z) {
+        Site::begin(signs, layout, y, z);
+        for_rows([&](int j, int k) {
+            const auto [gj, gk] = in_grid(j, k);
+            const auto counts = count_crossings(signs, gj, gk);
+            std::size_t crossing = layout.first_crossing(gj, gk);
+            for (std::size_t axis = 0; axis < 3; crossing += counts[axis++]) {
+                next_vertices_[row_index(j, k)][axis] = static_cast<std::uint32_t>(layout.vertex(crossing, gj, gk));
+            }
+        });
+    }
+
+    void load(std::size_t x) {
+        Site::load(x);
+        for_rows([&](int j, int k) { load_cut(j, k); });
+    }
+
+    const Cut& cut(int j, int k) const { return cuts_[row_index(j, k)]; }
+
+    // The number of a kept edge.
+    std::int32_t vertex(std::size_t axis, const std::array<std::uint8_t, 3>& at) const {
+        const Cut& here = cut(at[1], at[2]);
+        return static_cast<std::int32_t>(here.first_vertex[axis] + ones(here.kept[axis] & ((std::uint64_t{1} << at[0]) - 1)));
+    }
+
+  private:
+    void load_cut(int j, int k) {
+        const Row& here = row(j, k);
+        Cut& out = cuts_[row_index(j, k)];
+        auto& next = next_vertices_[row_index(j, k)];
+        out.first_vertex = next;
+        const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            out.kept[axis] = layout_->kept(here.crossed[axis], here.first_crossing[axis]);
+            next[axis] += ones(out.kept[axis] & own);
+        }
+        for (std::size_t half = 0; half <= static_cast<std::size_t>(cells[0] > kHalf); ++half) {
+            out.kept_halves[half] = pack(out.kept, half);
+            out.dropped_halves[half] = pack(here.crossed, half) ^ out.kept_halves[half];
+        }
+    }
+
+    static Half pack(const std::array<std::uint64_t, 3>& edges, std::size_t half) {
+        const auto part = [&](std::size_t axis) { return (edges[axis] >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis; };
+        return part(0) | part(1) | part(2);
+    }
+
+    std::array<Cut, kRows> cuts_;
+    std::array<std::array<std::uint32_t, 3>, kRows> next_vertices_;  // what comes after the blocks that were loaded
+};
+
+}  // namespace isocore::climbing
