@@ -105,12 +105,10 @@ class Drawer {
             const Coordinate* place = vertices_ + 3 * static_cast<std::size_t>(number);
             polygon_[loop_.place(n)] = {{place[0], place[1], place[2]}, loop_.faces(n), number};
         }
-        triangles_.resize(kept.size() - 2);
-        Polygon::Triangle* triangle = triangles_.data();
-        polygon_.cut([&](std::size_t a, std::size_t b, std::size_t c) {
-            for (const std::size_t n : {a, b, c}) *out++ = polygon_[n].vertex;
-            *triangle++ = {a, b, c};
-        });
+        triangles_ = polygon_.cut();
+        for (const Polygon::Triangle& triangle : triangles_) {
+            for (const std::size_t corner : triangle) *out++ = polygon_[corner].vertex;
+        }
         return out;
     }
 
@@ -123,7 +121,7 @@ class Drawer {
     BoxEdges edges_;
     EdgeLoop loop_;
     Polygon polygon_;
-    Array<Polygon::Triangle> triangles_;
+    std::span<const Polygon::Triangle> triangles_;  // of the box that was drawn last
     Ruler<Sample, Coordinate> ruler_;
 };
 
