@@ -139,15 +139,6 @@ void make_room(const std::vector<LateVertex>& late, Array<Coordinate>& vertices)
 
 // Turns the numbers that vertices had before into those that they have among the late ones.
 inline void renumber(const std::vector<LateVertex>& late, std::span<std::int32_t> vertices) {
-    constexpr std::size_t kFew = 32;
-    if (late.size() <= kFew) {
-        // One after the other, last one first, which vectorises.
-        for (std::size_t n = late.size(); n-- > 0;) {
-            const auto first_moved = static_cast<std::int32_t>(late[n].vertex - n);
-            for (std::int32_t& vertex : vertices) vertex += vertex >= first_moved;
-        }
-        return;
-    }
     std::vector<std::int32_t> first_moved;
     for (const LateVertex& vertex : late) first_moved.push_back(static_cast<std::int32_t>(vertex.vertex - first_moved.size()));
     for (std::int32_t& vertex : vertices) {
