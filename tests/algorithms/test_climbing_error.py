@@ -92,7 +92,7 @@ def test_a_flat_surface_costs_next_to_nothing() -> None:
     x = np.indices((33, 33, 33))[2].astype(np.float32)
     _, triangles, facts = _kernels.climb(np.asfortranarray(x), 10.25, max_error=0.001)
     assert len(triangles) == 8
-    assert facts["error_voxels"][0] < 1e-6
+    assert facts["error_voxels"][0] < 1e-5  # floats tell it to some 1e-7 of the box's 32 voxels
 
 
 def test_a_smaller_bound_never_takes_fewer_triangles() -> None:

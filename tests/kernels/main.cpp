@@ -3,6 +3,7 @@
 
 void test_bits();
 void test_crossing();
+void test_facets();
 void test_cell_loops();
 void test_climbing();
 void test_marching_cubes();
@@ -12,6 +13,7 @@ void test_thinning();
 int main() {
     test_bits();
     test_crossing();
+    test_facets();
     test_cell_loops();
     test_climbing();
     test_marching_cubes();

@@ -15,10 +15,31 @@
 
 namespace isocore::climbing {
 
-// A grid edge: its axis and its lower sample.
-struct Edge {
-    std::uint8_t axis;
-    std::array<std::uint8_t, 3> at;
+// A grid edge: its axis and its lower sample, a byte each. In one word, as whole words are copied faster than parts.
+class Edge {
+  public:
+    Edge() = default;
+    static constexpr Edge from(unsigned axis, unsigned i, unsigned j, unsigned k) { return Edge(i | j << 8 | k << 16 | axis << 24); }
+    Edge further_along_x(int steps) const { return Edge(word_ + static_cast<std::uint32_t>(steps)); }
+    Edge of_axis(int axis) const { return Edge(word_ | static_cast<std::uint32_t>(axis) << 24); }
+
+    unsigned axis() const { return word_ >> 24; }
+    int at(std::size_t a) const { return static_cast<int>(word_ >> 8 * a & 255); }
+    Place at() const { return {at(0), at(1), at(2)}; }
+
+    // The faces of a box that it lies on, a bit each.
+    unsigned faces(const HighRice& box) const {
+        const auto equal = [&](const std::array<std::uint8_t, 3>& end) {  // a bit above each byte, none of which exceeds 127
+            const std::uint32_t off = (word_ ^ (end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16)) & 0x7f7f7f;
+            return ~(off + 0x7f7f7f) & 0x808080;
+        };
+        const std::uint32_t pairs = equal(box.low) >> 7 | equal(box.high) >> 6;
+        return (pairs | pairs >> 6 | pairs >> 12) & 63 & ~(3u << 2 * axis());
+    }
+
+  private:
+    explicit constexpr Edge(std::uint32_t word) : word_(word) {}
+    std::uint32_t word_;
 };
 
 // Finds them by whole rows of the block.
@@ -26,27 +47,35 @@ class BoxEdges {
   public:
     explicit BoxEdges(int block_size) {
         const auto samples = static_cast<std::size_t>(block_size + 1);
-        for (List* list : {&kept_, &dropped_}) list->edges.resize(3 * samples * samples);  // no lign of a box is crossed twice
+        for (Array<Edge>* edges : {&kept_, &dropped_}) edges->resize(3 * samples * samples + 1);  // no lign of a box is crossed twice
     }
 
     // In the order of their rows, axes and samples. Dropped ones in a high face of the box are left to the box beyond.
-    void list(const DrawnSite& site, const HighRice& box) {
+    void find(const DrawnSite& site, const HighRice& box) {
         const int middle = DrawnSite::kHalf;
-        if (box.low[0] < middle) list(site, box, 0, std::min<int>(box.high[0], box.high[0] > middle ? middle - 1 : middle));
-        if (box.high[0] > middle) list(site, box, 1, box.high[0]);
-        kept_.unpack();
-        dropped_.unpack();
+        if (box.low[0] < middle) find(site, box, 0, std::min<int>(box.high[0], box.high[0] > middle ? middle - 1 : middle));
+        if (box.high[0] > middle) find(site, box, 1, box.high[0]);
+        Edge *kept = kept_.data(), *dropped = dropped_.data();
+        found_.visit([&](const Row& row, int bit) {
+            const int axis = bit / kWindow;
+            *kept = *dropped = row.start.further_along_x(bit - kWindow * axis).of_axis(axis);
+            const std::size_t is_kept = row.kept >> bit & 1;
+            kept += is_kept;
+            dropped += 1 - is_kept;
+        });
+        kept_size_ = static_cast<std::size_t>(kept - kept_.data());
+        dropped_size_ = static_cast<std::size_t>(dropped - dropped_.data());
     }
 
-    std::span<const Edge> kept() const { return {kept_.edges.data(), kept_.size}; }
-    std::span<const Edge> dropped() const { return {dropped_.edges.data(), dropped_.size}; }
+    std::span<const Edge> kept() const { return {kept_.data(), kept_size_}; }
+    std::span<const Edge> dropped() const { return {dropped_.data(), dropped_size_}; }
 
   private:
     using Half = DrawnSite::Half;
     static constexpr int kWindow = DrawnSite::kWindow;
 
-    // Lists those that start in half a row, at samples up to `end`.
-    void list(const DrawnSite& site, const HighRice& box, std::size_t half, int end) {
+    // Finds those that start in half a row, at samples up to `end`.
+    void find(const DrawnSite& site, const HighRice& box, std::size_t half, int end) {
         const int origin = half ? DrawnSite::kHalf : 0, start = std::max<int>(box.low[0] - origin, 0);
         const auto up_to = [&](int sample) { return (Half{2} << (sample - origin)) - (Half{1} << start); };
         std::array<bool, 3> owns_end;  // is there no box beyond?
@@ -59,38 +88,26 @@ class BoxEdges {
         const auto if_own = [&](std::size_t axis, Half mask) { return owns_end[axis] ? mask : 0; };
         const Masks dropped{{{along | own | own << kWindow, if_own(1, along | own << kWindow)},
                              {if_own(2, along | own), if_own(1, if_own(2, along))}}};
-        typename decltype(kept_.halves)::Adder add_kept(kept_.halves), add_dropped(dropped_.halves);
+        decltype(found_)::Adder add(found_);
         const int y0 = box.low[1], y1 = box.high[1], z0 = box.low[2], z1 = box.high[2];
         for (int k = z0; k <= z1; ++k) {
             const auto &kept_here = kept[k == z1], &dropped_here = dropped[k == z1];
             for (int j = y0; j <= y1; ++j) {
                 const DrawnSite::Cut& cut = site.cut(j, k);
-                const Row row{static_cast<std::uint8_t>(origin), static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k)};
-                add_kept(cut.kept_halves[half] & kept_here[j == y1], row);
-                add_dropped(cut.dropped_halves[half] & dropped_here[j == y1], row);
+                const Half here = cut.kept_halves[half] & kept_here[j == y1];
+                add(here | (cut.dropped_halves[half] & dropped_here[j == y1]),
+                    {here, Edge::from(0, static_cast<unsigned>(origin), static_cast<unsigned>(j), static_cast<unsigned>(k))});
             }
         }
     }
 
     struct Row {
-        std::uint8_t i, j, k;
+        Half kept;
+        Edge start;
     };
-    struct List {
-        SetBits<Row, 2 * Site::kRows> halves;
-        std::size_t size = 0;
-        Array<Edge> edges;
-
-        void unpack() {
-            Edge* end = edges.data();
-            halves.visit([&](const Row& row, int bit) {
-                const int axis = (bit >= kWindow) + (bit >= 2 * kWindow);
-                *end++ = {static_cast<std::uint8_t>(axis), {static_cast<std::uint8_t>(row.i + bit - kWindow * axis), row.j, row.k}};
-            });
-            size = static_cast<std::size_t>(end - edges.data());
-        }
-    };
-
-    List kept_, dropped_;
+    SetBits<Row, 2 * Site::kRows> found_;
+    Array<Edge> kept_, dropped_;  // and room for one that is not
+    std::size_t kept_size_ = 0, dropped_size_ = 0;
 };
 
 }  // namespace isocore::climbing

@@ -3,8 +3,10 @@
 #include "climbing/climb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "climbing/layout.hpp"
 #include "climbing/partition.hpp"
 #include "climbing/splitting.hpp"
+#include "climbing/spotter.hpp"
 #include "common/edge_vertices.hpp"
 #include "common/gaps.hpp"
 #include "common/parallel.hpp"
@@ -27,29 +30,48 @@ template <class Sample>
 class Gatherer final : public Judge {
   public:
     Gatherer(const GridView<Sample>& samples, const SignGrid& signs, const Options& options)
-        : Judge(options.max_error, options.in_world ? options.spacing : Point{1, 1, 1}),
+        : Judge(options.max_error, options.in_world ? options.spacing : Vector<double>{1, 1, 1}),
           samples_(samples),
           signs_(signs),
           isovalue_(options.isovalue) {}
 
-    void gather(const Site& site, Clouds& clouds) const override {
+    void gather(const Site& site, Clouds& clouds, Ligns& ligns) const override {
         struct Row {
             int axis, j, k;
+            std::size_t edge, step;  // the number of the first edge, and how far the next one's is from it
+            std::size_t lign;        // the first of those across the row
+            std::uint64_t bit;       // of the edge in each of them
         };
         SetBits<Row, 64> found;
+        Spotter<Sample> spotter(samples_, signs_, isovalue_);
+        const std::size_t samples = site.samples();
+        ligns.clear(samples);
+        std::array<std::uint32_t, Spotter<Sample>::kRoom> edges;
+        static_assert(edges.size() >= 64 * 33);
         const auto add = [&] {
+            std::size_t size = 0;
             found.visit([&](const Row& row, int i) {
                 const Place at{i, row.j, row.k};
-                const auto whole = [&](std::size_t a) { return site.origin[a] + static_cast<std::size_t>(at[a]); };
-                float place[3] = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
-                place[row.axis] += static_cast<float>(edge_crossing(samples_, signs_, isovalue_, row.axis, whole(0), whole(1), whole(2)));
-                clouds.add({place[0] * scale[0], place[1] * scale[1], place[2] * scale[2]});
+                spotter.add(site.origin, row.axis, at);
+                edges[size++] = static_cast<std::uint32_t>(row.edge + row.step * static_cast<std::size_t>(i));
+                ligns.crossed[row.lign + static_cast<std::size_t>(i)] |= row.bit;
+            });
+            spotter.visit({}, scale, [&](const auto& places, const auto& found_shares, std::size_t first, std::size_t count) {
+                clouds.add(places, count);
+                const auto each = found_shares.each();
+                for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[first + n]] = each[n];
             });
         };
         for (int k = 0; k <= site.cells[2]; ++k) {
             for (int j = 0; j <= site.cells[1]; ++j) {
-                for (int axis = 0; axis < 3; ++axis) {
-                    found.add(site.row(j, k).crossed[static_cast<std::size_t>(axis)], {axis, j, k});
+                const auto& crossed = site.row(j, k).crossed;
+                const std::size_t along_row = Ligns::lign(samples, 0, j, k), along_y = Ligns::lign(samples, 1, 0, k), along_z = Ligns::lign(samples, 2, 0, j);
+                ligns.crossed[along_row] = crossed[0];
+                const std::array<Row, 3> rows{Row{0, j, k, Ligns::edge(samples, along_row, 0), 1, along_row, 0},
+                                              Row{1, j, k, Ligns::edge(samples, along_y, j), samples, along_y, std::uint64_t{1} << j},
+                                              Row{2, j, k, Ligns::edge(samples, along_z, k), samples, along_z, std::uint64_t{1} << k}};
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    found.add(crossed[axis], rows[axis]);
                     if (found.full()) add();
                 }
             }

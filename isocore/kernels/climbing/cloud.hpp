@@ -1,4 +1,5 @@
-// cloud.hpp - The crossings of a block as points, and the clouds of its boxes, one filtered from the other.
+// cloud.hpp - The crossings of a block as points, and the clouds of its boxes, one filtered from the other. All are relative
+// to the block and in the unit of the error bound.
 #pragma once
 
 #include <array>
@@ -6,15 +7,13 @@
 #include <cstddef>
 #include <limits>
 
+#include "climbing/vectors.hpp"
 #include "common/array.hpp"
 #include "common/lanes.hpp"
 
 namespace isocore::climbing {
 
-// The place of a crossing relative to its block, in the unit of the error bound.
-using Spot = std::array<float, 3>;
-
-// A closed box in the same unit.
+// A closed box.
 struct Extent {
     Spot low, high;
 };
@@ -23,8 +22,6 @@ struct Extent {
 struct Cloud {
     std::array<const float*, 3> axes{};
     std::size_t size = 0, lanes = 0;
-
-    Spot operator[](std::size_t n) const { return {axes[0][n], axes[1][n], axes[2][n]}; }
 };
 
 using Numbers = Lanes<float>;
@@ -43,9 +40,10 @@ class Clouds {
         for (auto& axis : places_) axis.resize((size + 2 * kLanes<float>) * levels);
         start_ = top_ = 0;
     }
-    void add(const Spot& spot) {
-        for (std::size_t a = 0; a < 3; ++a) places_[a][top_] = spot[a];
-        ++top_;
+    // Adds the first `count` lanes.
+    void add(const Vector<Numbers>& spots, std::size_t count) {
+        for (std::size_t a = 0; a < 3; ++a) spots[a].store(places_[a].data() + top_);
+        top_ += count;
     }
     // Ends the cloud that was added since the last one.
     Cloud finish() {

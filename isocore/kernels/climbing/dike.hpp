@@ -39,6 +39,9 @@ struct DikeBits {
     // The dikes that start, or end, at a marked sample.
     static Word starting(Word marked) { return units(marked) | shifted<1, 0>(marked); }
     static Word ending(Word marked) { return units(marked >> 1) | shifted<1, 1>(marked); }
+    // The dikes whose lower, or upper, halves are marked.
+    static Word with_lower_half(Word marked) { return halves<2, 0>(marked); }
+    static Word with_upper_half(Word marked) { return halves<2, 1>(marked); }
     // The dikes that are crossed several times, by the samples of their lign.
     static Word crossed_again(Word lign) { return doubled<1>((lign ^ lign >> 1) & kUnits, 0); }
 
@@ -72,6 +75,12 @@ struct DikeBits {
             return twice << half | doubled<2 * half>((any | any >> half) & starts(2 * half), twice);
         }
         return 0;
+    }
+    template <int length, int upper>
+    static Word halves(Word marked) {
+        if constexpr (length > N) return 0;
+        else if constexpr (length == 2) return (marked >> (N - 1) >> upper & starts(2) << 1) | halves<4, upper>(marked);
+        else return ((upper ? marked >> length / 4 : marked << length / 4) & starts(length) << length / 2) | halves<2 * length, upper>(marked);
     }
     static Word units(Word marked) { return static_cast<Word>((marked & kUnits) << (N - 1) << 1); }
     // Samples at which dikes of a length start.

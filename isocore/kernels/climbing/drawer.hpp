@@ -44,7 +44,7 @@ class Drawer {
             site_.load(origin[0]);
             for (const HighRice& box : boxes) {
                 out = draw_disk(box, out);
-                if (options_.measured && !ruler_.measure(site_, edges_.dropped(), polygon_, triangles_)) {
+                if (options_.measured && !ruler_.measure(site_.origin, box, edges_.dropped(), polygon_, triangles_)) {
                     bar.broken.push_back(static_cast<std::size_t>(&box - bar.boxes.data()));
                 }
             }
@@ -96,18 +96,22 @@ class Drawer {
     }
 
     std::int32_t* draw_disk(const HighRice& box, std::int32_t* out) {
-        edges_.list(site_, box);
+        edges_.find(site_, box);
         loop_.arrange(edges_.kept(), box, site_.corners(box));
         const auto kept = edges_.kept();
+        std::array<Coordinate, 3> origin;  // numbers are small when taken from there
+        for (std::size_t a = 0; a < 3; ++a) origin[a] = static_cast<Coordinate>(site_.origin[a] + box.low[a]) - static_cast<Coordinate>(signs_.pad);
         polygon_.resize(kept.size());
         for (std::size_t n = 0; n < kept.size(); ++n) {
-            const std::int32_t number = site_.vertex(kept[n].axis, kept[n].at);
+            const std::int32_t number = site_.vertex(kept[n].axis(), kept[n].at());
             const Coordinate* place = vertices_ + 3 * static_cast<std::size_t>(number);
-            polygon_[loop_.place(n)] = {{place[0], place[1], place[2]}, loop_.faces(n), number};
+            Spot from_there;
+            for (std::size_t a = 0; a < 3; ++a) from_there[a] = static_cast<float>(place[a] - origin[a]);
+            polygon_.set(loop_.place(n), from_there, loop_.faces(n), number);
         }
         triangles_ = polygon_.cut();
         for (const Polygon::Triangle& triangle : triangles_) {
-            for (const std::size_t corner : triangle) *out++ = polygon_[corner].vertex;
+            for (const std::size_t corner : triangle) *out++ = polygon_.vertex(corner);
         }
         return out;
     }
@@ -122,7 +126,7 @@ class Drawer {
     EdgeLoop loop_;
     Polygon polygon_;
     std::span<const Polygon::Triangle> triangles_;  // of the box that was drawn last
-    Ruler<Sample, Coordinate> ruler_;
+    Ruler<Sample> ruler_;
 };
 
 }  // namespace isocore::climbing

@@ -45,7 +45,7 @@ class DrawnSite : public Site {
     const Cut& cut(int j, int k) const { return cuts_[row_index(j, k)]; }
 
     // The number of a kept edge.
-    std::int32_t vertex(std::size_t axis, const std::array<std::uint8_t, 3>& at) const {
+    std::int32_t vertex(std::size_t axis, const Place& at) const {
         const Cut& here = cut(at[1], at[2]);
         return static_cast<std::int32_t>(here.first_vertex[axis] + ones(here.kept[axis] & ((std::uint64_t{1} << at[0]) - 1)));
     }

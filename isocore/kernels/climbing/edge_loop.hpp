@@ -5,7 +5,6 @@
 // it runs one way along both axes, and the kept edges in the face come in the order of how far they are that way.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -15,6 +14,7 @@
 
 #include "climbing/box_edges.hpp"
 #include "climbing/high_rice.hpp"
+#include "common/lanes.hpp"
 
 namespace isocore::climbing {
 
@@ -24,16 +24,25 @@ class EdgeLoop {
     void arrange(std::span<const Edge> kept, const HighRice box, unsigned corners) {
         const Rim& rim = kRims[corners];
         const auto& stops = kStops[corners];
-        std::uint64_t at_stop = 0;  // how many edges lie there, four bits each
+        unsigned visited = 0;  // stops
         for (std::size_t n = 0; n < kept.size(); ++n) {
-            const std::uint8_t faces = faces_of(kept[n], box), stop = stops[kPartOfSurface[faces]];
+            const auto faces = static_cast<std::uint8_t>(kept[n].faces(box));
+            const std::uint8_t stop = stops[kPartOfSurface[faces]];
             faces_[n] = faces;
             stops_[n] = stop;
-            at_stop += std::uint64_t{1} << 4 * stop;
+            places_[n] = kStep * static_cast<float>(stop);
+            visited |= 1u << stop;
         }
-        if (kept.size() > rim.length + std::size_t{1}) return order_in_faces(kept, rim.length);
-        const std::uint64_t before = at_stop * 0x1111111111111110;  // sums of those below
-        for (std::size_t n = 0; n < kept.size(); ++n) order_[n] = static_cast<std::uint16_t>(before >> 4 * stops_[n] & 15);
+        if (static_cast<std::size_t>(std::popcount(visited)) < kept.size()) go_on_in_faces(kept, rim.length);
+        Numbers(std::numeric_limits<float>::max()).store(places_.data() + kept.size());
+        const Numbers zero(0.0f), one(1.0f);
+        for (std::size_t first = 0; first < kept.size(); first += kLanes<float>) {
+            const Numbers here(places_.data() + first);
+            Numbers before = zero;
+            for (std::size_t n = 0; n < kept.size(); ++n) before = before + choose(Numbers(places_[n]) < here, one, zero);
+            const auto each = before.each();
+            for (std::size_t n = 0; n < each.size(); ++n) order_[first + n] = static_cast<std::uint16_t>(each[n]);
+        }
     }
 
     // Which edge of the loop the n-th kept one is, and the faces of the box that it lies on, a bit each.
@@ -41,8 +50,9 @@ class EdgeLoop {
     unsigned faces(std::size_t n) const { return faces_[n]; }
 
   private:
-    static constexpr std::size_t kLongest = 6 * 2 * 32, kTogether = 8;
-    static constexpr std::int32_t kStep = 1 << 16;  // more than any distance along a face
+    using Numbers = Lanes<float>;
+    static constexpr std::size_t kLongest = 6 * 2 * 32;
+    static constexpr float kStep = 1 << 16;  // more than any distance along a face
 
     // Stops of a loop: its rim edges and, between them, its faces. By corner signs; edges first, then faces.
     static constexpr std::array<std::array<std::uint8_t, 18>, 256> kStops = [] {
@@ -64,20 +74,12 @@ class EdgeLoop {
         return parts;
     }();
 
-    static std::uint8_t faces_of(const Edge& edge, const HighRice& box) {
-        unsigned faces = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-            faces |= static_cast<unsigned>(edge.at[a] == box.low[a]) << 2 * a | static_cast<unsigned>(edge.at[a] == box.high[a]) << (2 * a + 1);
-        }
-        return static_cast<std::uint8_t>(faces & ~(3u << 2 * edge.axis));
-    }
-
-    // The same where several edges may lie in one face.
-    void order_in_faces(std::span<const Edge> kept, std::size_t rim_length) {
+    // Adds how far the edges in faces are along these.
+    void go_on_in_faces(std::span<const Edge> kept, std::size_t rim_length) {
         using Halves = std::array<std::int32_t, 3>;  // a place in half steps: edges lie between samples
         const auto halves = [&](std::size_t n) {
             Halves out;
-            for (std::size_t a = 0; a < 3; ++a) out[a] = 2 * kept[n].at[a] + (kept[n].axis == a);
+            for (std::size_t a = 0; a < 3; ++a) out[a] = 2 * kept[n].at(a) + (kept[n].axis() == a);
             return out;
         };
         std::array<Halves, 7> ends{};
@@ -86,24 +88,16 @@ class EdgeLoop {
         }
         ends[rim_length] = ends[0];
         for (std::size_t n = 0; n < kept.size(); ++n) {
-            places_[n] = stops_[n] * kStep;
-            if (stops_[n] % 2 == 0) continue;
             const Halves here = halves(n), &from = ends[stops_[n] / 2u], &to = ends[stops_[n] / 2u + 1];
-            for (std::size_t a = 0; a < 3; ++a) places_[n] += (to[a] - from[a]) * (here[a] - from[a]);
-        }
-        std::fill_n(places_.begin() + static_cast<std::ptrdiff_t>(kept.size()), kTogether, std::numeric_limits<std::int32_t>::max());
-        for (std::size_t n = 0; n < kept.size(); ++n) {
-            std::uint32_t before = 0;
-            for (std::size_t m = 0; m < kept.size(); m += kTogether) {
-                for (std::size_t l = 0; l < kTogether; ++l) before += places_[m + l] < places_[n];
-            }
-            order_[n] = static_cast<std::uint16_t>(before);
+            std::int32_t along = 0;  // 0 for those on the rim
+            for (std::size_t a = 0; a < 3; ++a) along += (to[a] - from[a]) * (here[a] - from[a]);
+            places_[n] += static_cast<float>(along);
         }
     }
 
-    std::array<std::int32_t, kLongest + kTogether> places_;  // along the loop, of the kept edges
+    std::array<float, kLongest + kLanes<float>> places_;  // along the loop, of the kept edges
     std::array<std::uint8_t, kLongest> faces_, stops_;
-    std::array<std::uint16_t, kLongest> order_;
+    std::array<std::uint16_t, kLongest + kLanes<float>> order_;
 };
 
 }  // namespace isocore::climbing

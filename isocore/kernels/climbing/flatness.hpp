@@ -10,40 +10,72 @@
 
 #include "climbing/cloud.hpp"
 #include "climbing/high_rice.hpp"
+#include "climbing/vectors.hpp"
 
 namespace isocore::climbing {
 
+// A Rim, a lane for each edge: its axis, whether it is at the high end along each other, and the axis of the face between
+// it and the next.
+struct RimLanes {
+    using Row = std::array<float, kLanes<float>>;
+    Row axes{}, face_axes{};
+    Vector<Row> high{};
+};
+inline constexpr std::array<RimLanes, 256> kRimLanes = [] {
+    std::array<RimLanes, 256> lanes{};
+    for (unsigned signs = 0; signs < 256; ++signs) {
+        for (std::size_t n = 0; n < kLanes<float>; ++n) {
+            const Rim& rim = kRims[signs];
+            const std::size_t here = n < rim.length ? n : 0;
+            const int edge = rim.edges[here];
+            lanes[signs].axes[n] = static_cast<float>(edge / 4);
+            lanes[signs].face_axes[n] = static_cast<float>(rim.faces[here] / 2);
+            for (std::size_t a = 0; a < 3; ++a) lanes[signs].high[a][n] = static_cast<float>(cube::low_corner(edge) >> a & 1);
+        }
+    }
+    return lanes;
+}();
+
 class Flatness {
   public:
-    using Ring = std::array<Spot, 6>;  // the crossings on a box's edges, in the order of its Rim, then the first again
+    // The crossings on a box's edges, in the order of its Rim, then the first again: where each is along its edge's axis.
+    using Ring = std::array<float, kLanes<float>>;
 
-    explicit Flatness(double max_error) : max_error_(static_cast<float>(max_error)) {}
+    explicit Flatness(double max_error) : max_error_(kMargin * static_cast<float>(max_error)) {}
 
-    // around: all crossings in the closed disk box, and perhaps others.
-    bool operator()(const Cloud& around, const Extent& box, const Rim& rim, const Ring& ring) const {
-        Spot normal{};
-        for (std::size_t n = 2; n < ring.size(); ++n) {
-            const Spot part = cross(minus(ring[n - 1], ring[0]), minus(ring[n], ring[0]));
-            for (std::size_t a = 0; a < 3; ++a) normal[a] += part[a];
-        }
-        return normalise(normal) && in_slab(around, box, ring, normal) && near_chords(around, box, ring, rim);
+    // around: all crossings in the closed disk box, and perhaps others. signs: those of its corners.
+    bool operator()(const Cloud& around, const Extent& box, unsigned signs, const Ring& ring) const {
+        const auto corners = places(box, kRimLanes[signs], ring);
+        const Vector<Numbers> next{corners[0].rotated(), corners[1].rotated(), corners[2].rotated()};
+        const Spot first{corners[0].first(), corners[1].first(), corners[2].first()};
+        const auto normals = cross(minus(corners, {first[0], first[1], first[2]}), minus(next, corners));
+        Spot normal{normals[0].sum(), normals[1].sum(), normals[2].sum()};
+        return normalise(normal) && in_slab(around, box, corners, first, normal) && near_chords(around, box, corners, next, signs);
     }
 
   private:
-    // A slab this many times too thick is hardly ever saved by a better plane; nor if its corners alone make it so.
-    static constexpr float kWorthFitting = 1.25f, kHopeless = 2;
+    // A little less than the bound, so that roundings do not have boxes halved late.
+    static constexpr float kMargin = 1 - 1.0f / 65536;
+    // A slab this many times too thick is hardly ever saved by a better plane.
+    static constexpr float kWorthFitting = 1.25f;
 
-    static Spot minus(const Spot& a, const Spot& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-    static float dot(const Spot& a, const Spot& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-    static Spot cross(const Spot& a, const Spot& b) {
-        return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    }
+
     static bool normalise(Spot& a) {
         const float length = std::sqrt(dot(a, a));
         if (!(length > 0)) return false;
         const float scale = 1 / length;
         for (float& x : a) x *= scale;
         return true;
+    }
+
+    static Vector<Numbers> places(const Extent& box, const RimLanes& rim, const Ring& ring) {
+        const Numbers axes(rim.axes.data()), along(ring.data());
+        Vector<Numbers> out;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto at_end = choose(Numbers(rim.high[a].data()) == 0.0f, Numbers(box.low[a]), Numbers(box.high[a]));
+            out[a] = choose(axes == static_cast<float>(a), along, at_end);
+        }
+        return out;
     }
 
     template <class Visit>
@@ -53,18 +85,13 @@ class Flatness {
         }
     }
 
-    bool in_slab(const Cloud& around, const Extent& box, const Ring& ring, Spot normal) const {
-        float low = dot(ring[0], normal), high = low;
-        for (std::size_t n = 1; n < ring.size(); ++n) {
-            const float height = dot(ring[n], normal);
-            low = std::min(low, height);
-            high = std::max(high, height);
-        }
-        if (high - low > kHopeless * max_error_) return false;
+    bool in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners, const Spot& first, Spot normal) const {
+        const Numbers heights = over(normal, corners[0], corners[1], corners[2]);
+        if (heights.greatest_lane() - heights.least_lane() > kWorthFitting * max_error_) return false;
         const float thickness = width(around, box, normal);
         if (thickness <= max_error_) return true;
         if (thickness > kWorthFitting * max_error_) return false;
-        return fit(around, box, ring[0], normal) && width(around, box, normal) <= max_error_;
+        return fit(around, box, first, normal) && width(around, box, normal) <= max_error_;
     }
 
     // The thickness of the slab across `normal` that holds all crossings in the box.
@@ -73,13 +100,13 @@ class Flatness {
         Numbers low = infinity, high = minus_infinity;
         each(around, [&](const Numbers& x, const Numbers& y, const Numbers& z) {
             const auto here = within(box, x, y, z);
-            const Numbers height = x * normal[0] + y * normal[1] + z * normal[2];
+            const Numbers height = over(normal, x, y, z);
             low = least(low, choose(here, height, infinity));
             high = greatest(high, choose(here, height, minus_infinity));
         });
-        const auto lows = low.each(), highs = high.each();
-        return *std::max_element(highs.begin(), highs.end()) - *std::min_element(lows.begin(), lows.end());
+        return high.greatest_lane() - low.least_lane();
     }
+    static Numbers over(const Spot& normal, const Numbers& x, const Numbers& y, const Numbers& z) { return x * normal[0] + y * normal[1] + z * normal[2]; }
 
     // Turns the normal to that of the least-squares plane of heights over the plane across the old one.
     static bool fit(const Cloud& around, const Extent& box, const Spot& origin, Spot& normal) {
@@ -119,31 +146,25 @@ class Flatness {
 
     // Does every crossing on a face lie near the line through the two on the face's rim? (Between those two, as the
     // iso-lines of a face run one way along both axes.)
-    bool near_chords(const Cloud& around, const Extent& box, const Ring& ring, const Rim& rim) const {
-        struct Chord {
-            const float* across;  // the places along the face's axis
-            float side;
-            Spot normal;  // not to scale
-            float height, limit;
-        };
-        std::array<Chord, 6> chords;
-        for (unsigned n = 0; n < rim.length; ++n) {
-            const std::size_t axis = rim.faces[n] / 2u, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
-            const Spot along = minus(ring[n + 1 < rim.length ? n + 1 : 0], ring[n]);
-            Spot normal{};
-            normal[u] = -along[v];
-            normal[v] = along[u];
-            const float limit = max_error_ * max_error_ * dot(normal, normal);
-            chords[n] = {around.axes[axis], rim.faces[n] & 1 ? box.high[axis] : box.low[axis], normal, dot(normal, ring[n]), limit};
-        }
-        auto far = Numbers(0.0f) < Numbers(0.0f);
+    bool near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from, const Vector<Numbers>& to, unsigned signs) const {
+        const Rim& rim = kRims[signs];
+        // The normals of the chords within their faces, not to scale.
+        const auto along = minus(to, from);
+        const Numbers zero(0.0f), axis(kRimLanes[signs].face_axes.data());
+        const auto x = axis == 0.0f, y = axis == 1.0f;
+        const Vector<Numbers> normals{choose(x, zero, choose(y, along[2], along[1])), choose(y, zero, choose(x, along[2], zero - along[0])),
+                                      choose(x, zero - along[1], choose(y, zero - along[0], zero))};
+        const auto normals_x = normals[0].each(), normals_y = normals[1].each(), normals_z = normals[2].each();
+        const auto heights = dot(normals, from).each(), limits = (dot(normals, normals) * (max_error_ * max_error_)).each();
+        auto far = zero < zero;
         for (std::size_t n = 0; n < around.lanes; n += kLanes<float>) {
-            const Numbers x(around.axes[0] + n), y(around.axes[1] + n), z(around.axes[2] + n);
-            const auto here = within(box, x, y, z);
-            for (unsigned c = 0; c < rim.length; ++c) {
-                const auto& [across, side, normal, height, limit] = chords[c];
-                const Numbers off = x * normal[0] + y * normal[1] + z * normal[2] - height;
-                far = far | (here & (Numbers(across + n) == Numbers(side)) & (Numbers(limit) < off * off));
+            const Vector<Numbers> spots{Numbers(around.axes[0] + n), Numbers(around.axes[1] + n), Numbers(around.axes[2] + n)};
+            const auto here = within(box, spots[0], spots[1], spots[2]);
+            for (std::size_t c = 0; c < rim.length; ++c) {
+                const unsigned face = rim.faces[c];
+                const Numbers off = over({normals_x[c], normals_y[c], normals_z[c]}, spots[0], spots[1], spots[2]) - heights[c];
+                const auto on_face = Numbers(around.axes[face / 2] + n) == (face & 1 ? box.high : box.low)[face / 2];
+                far = far | (here & on_face & (Numbers(limits[c]) < off * off));
             }
         }
         return !far.any();

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "climbing/cloud.hpp"
 #include "climbing/cuts.hpp"
 #include "climbing/flatness.hpp"
+#include "climbing/ligns.hpp"
 #include "climbing/rim.hpp"
 #include "climbing/survey.hpp"
 
@@ -28,7 +28,7 @@ class Partition {
     // Adds a block to its bar, unless all its samples lie on one side. A bar's blocks come in their order.
     void climb(const Dims& origin, BarBoxes& bar) {
         if (!block_.load(signs_, origin)) return;
-        survey_.take(block_);
+        survey_.take(block_, !judge_);
         if (bar.blocks.empty()) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
         cuts_.clear();
@@ -62,22 +62,17 @@ class Partition {
     static constexpr std::size_t kWorthFiltering = 16;  // crossings around a box
     static constexpr std::size_t kLevels = 3 * Dikes::kDepth + 1;
 
-    // What becomes of a box, as the price of what it yields: in half boxes, and more than two boxes if it is split.
-    static constexpr int kNothing = 0, kAccepted = 2, kSplit = 5;
+    static constexpr int kAccepted = Survey<N>::kAccepted, kSplit = Survey<N>::kSplit;
 
     void gather() {
-        site_.lay_columns();
-        std::uint32_t count = 0;
+        std::size_t count = 0;
         for (int k = 0; k <= site_.cells[2]; ++k) {
             for (int j = 0; j <= site_.cells[1]; ++j) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    first_[row_index(j, k)][axis] = count;
-                    count += static_cast<std::uint32_t>(std::popcount(site_.row(j, k).crossed[axis]));
-                }
+                for (const std::uint64_t crossed : site_.row(j, k).crossed) count += static_cast<std::size_t>(std::popcount(crossed));
             }
         }
         clouds_.reset(count, kLevels);
-        judge_->gather(site_, clouds_);
+        judge_->gather(site_, clouds_, ligns_);
         crossings_ = clouds_.finish();
     }
 
@@ -100,11 +95,7 @@ class Partition {
         return passed_[y][z] & bit ? kAccepted : kSplit;
     }
 
-    static int survey_price(const typename Survey<N>::Verdicts& verdicts, int bit) {
-        const auto is = [&](Word boxes) { return static_cast<int>(boxes >> bit & 1); };
-        return kSplit - (kSplit - kNothing) * is(verdicts.nothing) - (kSplit - kAccepted) * is(verdicts.highrice);
-    }
-    int survey_price(const Box& box) const { return survey_price(survey_.verdicts(box[1], box[2]), DikeBits<N>::bit(box[0])); }
+    int survey_price(const Box& box) const { return survey_.price(box[1], box[2], DikeBits<N>::bit(box[0])); }
 
     // The prices of the halves along each axis; of the box itself twice where it is one cell thick.
     using Prices = std::array<std::array<int, 2>, 3>;
@@ -113,23 +104,30 @@ class Partition {
         const auto lower = [](Label label) { return label << !Dikes::is_unit(label); };
         const auto upper = [](Label label) { return label << !Dikes::is_unit(label) | Label{!Dikes::is_unit(label)}; };
         const int bit = DikeBits<N>::bit(x);
-        const auto& here = survey_.verdicts(y, z);
-        return {{{survey_price(here, DikeBits<N>::bit(lower(x))), survey_price(here, DikeBits<N>::bit(upper(x)))},
-                 {survey_price(survey_.verdicts(lower(y), z), bit), survey_price(survey_.verdicts(upper(y), z), bit)},
-                 {survey_price(survey_.verdicts(y, lower(z)), bit), survey_price(survey_.verdicts(y, upper(z)), bit)}}};
+        return {{{survey_.price(y, z, DikeBits<N>::bit(lower(x))), survey_.price(y, z, DikeBits<N>::bit(upper(x)))},
+                 {survey_.price(lower(y), z, bit), survey_.price(upper(y), z, bit)},
+                 {survey_.price(y, lower(z), bit), survey_.price(y, upper(z), bit)}}};
     }
 
     bool is_flat(const Box& box, const Cloud& around) const {
         const HighRice rice = high_rice(box);
-        const Rim& rim = kRims[site_.corners(rice)];
+        const unsigned corners = site_.corners(rice);
+        const Rim& rim = kRims[corners];
+        const Ends ends = ends_of(rice);
+        // Always four or six, which is cheaper than to guess how many.
         Flatness::Ring ring;
-        for (std::size_t n = 0; n < ring.size(); ++n) {  // always all, which is cheaper than to guess how many
-            const RimEdge edge = box_crossing(site_, rice, rim.edges[n]);
-            const auto axis = static_cast<std::size_t>(edge.axis);
-            const std::uint64_t before = site_.row(edge.at[1], edge.at[2]).crossed[axis] & ((std::uint64_t{1} << edge.at[0]) - 1);
-            ring[n] = crossings_[first_[row_index(edge.at[1], edge.at[2])][axis] + static_cast<std::size_t>(std::popcount(before))];
-        }
-        return flat_(around, extent(rice), rim, ring);
+        const std::size_t size = rim.length > 4 ? 6 : 4;
+        for (std::size_t n = 0; n < size; ++n) ring[n] = along_edge(ends, kSides[rim.edges[n]]);
+        std::fill(ring.begin() + size, ring.end(), ring[0]);
+        return flat_(around, extent(rice), corners, ring);
+    }
+
+    // Where the one crossing on an edge of a simple box is along its axis.
+    float along_edge(const Ends& ends, const Side& side) const {
+        constexpr std::size_t kSamples = N + 1;
+        const std::size_t lign = Ligns::lign(kSamples, side.axis, ends[side.ends[0]], ends[side.ends[1]]);
+        const int along = std::countr_zero(ligns_.crossed[lign] & ~std::uint64_t{0} << ends[2u * side.axis]);
+        return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) * judge_->scale[side.axis];
     }
 
     void settle(const Box& box, int found, const Cloud& around, std::vector<HighRice>& boxes) {
@@ -170,7 +168,7 @@ class Partition {
         Prices prices = survey_halves(box);
         std::array<int, 3> ranks;  // least is best
         for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
-        const auto best = [&] { return static_cast<std::size_t>(std::min({ranks[0], ranks[1], ranks[2]}) & 3); };
+        const auto best = [&] { return static_cast<std::size_t>(std::min(std::min(ranks[0], ranks[1]), ranks[2]) & 3); };
         if (!judge_) {
             if (Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -192,7 +190,10 @@ class Partition {
 
     int price_further(const std::array<Box, 2>& parts, const std::array<int, 2>& prices) const {
         int sum = 0;
-        for (std::size_t n = 0; n < parts.size(); ++n) sum += prices[n] == kSplit ? cost_of_halves(parts[n]) : prices[n];
+        for (std::size_t n = 0; n < parts.size(); ++n) {
+            const auto& [x, y, z] = parts[n];
+            sum += prices[n] == kSplit ? survey_.price_of_halves(y, z, DikeBits<N>::bit(x)) : prices[n];
+        }
         return sum;
     }
 
@@ -200,16 +201,6 @@ class Partition {
         constexpr int kMoreThanAnyLength = 64, kMoreThanAnyCost = 1 << 10;
         const int thick = kMoreThanAnyCost * static_cast<int>(Dikes::is_unit(box[axis])) + cost;
         return 4 * (kMoreThanAnyLength * thick - Dikes::length(box[axis])) + static_cast<int>(axis);
-    }
-
-    int cost_of_halves(const Box& box) const {
-        const Prices prices = survey_halves(box);
-        int least = std::numeric_limits<int>::max();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const int thick = Dikes::is_unit(box[axis]) ? 4 * kSplit : 0;
-            least = std::min(least, prices[axis][0] + prices[axis][1] + thick);
-        }
-        return least;
     }
 
     Extent extent(const HighRice& box) const {
@@ -230,8 +221,6 @@ class Partition {
         return rice;
     }
 
-    static std::size_t row_index(int j, int k) { return static_cast<std::size_t>(j + (N + 1) * k); }
-
     const SignGrid& signs_;
     Layout& layout_;
     const Judge* judge_;
@@ -242,9 +231,9 @@ class Partition {
     Cuts<N> cuts_;
     std::array<std::uint32_t, N * N> cells_;  // highrices of one cell: [k][j], bit i
     Clouds clouds_;
-    Cloud crossings_;                                                    // of the whole block
-    std::array<std::array<std::uint32_t, 3>, (N + 1) * (N + 1)> first_;  // of them, the first along each axis of row (j, k)
-    Table asked_, passed_;                                               // boxes by labels: judged, and found flat
+    Cloud crossings_;       // of the whole block
+    Ligns ligns_;
+    Table asked_, passed_;  // boxes by labels: judged, and found flat
 };
 
 template <int N>

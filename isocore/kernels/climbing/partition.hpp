@@ -10,6 +10,7 @@
 #include "climbing/cloud.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/layout.hpp"
+#include "climbing/ligns.hpp"
 #include "climbing/site.hpp"
 #include "common/signs.hpp"
 
@@ -21,8 +22,8 @@ class Judge {
     Judge(double bound, const std::array<double, 3>& stretch)
         : max_error(bound), scale{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])} {}
     virtual ~Judge() = default;
-    // Adds all crossings of the closed block: by row (j, k), axis, and i.
-    virtual void gather(const Site& site, Clouds& clouds) const = 0;
+    // Adds all crossings of the closed block.
+    virtual void gather(const Site& site, Clouds& clouds, Ligns& ligns) const = 0;
 
     const double max_error;
     const Spot scale;  // from samples to the unit of the bound

@@ -14,14 +14,13 @@ namespace {
 
 using Numbers = Lanes<float>;
 constexpr float kIllegal = 1e30f;  // more than any area; a few of them are still a number
-constexpr std::array<float, kLanes<float>> kLaneNumbers{0, 1, 2, 3, 4, 5, 6, 7};
 
 [[noreturn]] void fail() { throw std::logic_error("a loop has no legal triangulation"); }
 
-Numbers areas(const std::array<Numbers, 3>& a, const std::array<Numbers, 3>& b, const std::array<Numbers, 3>& c) {
-    const Numbers ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2], vx = c[0] - a[0], vy = c[1] - a[1], vz = c[2] - a[2];
-    const Numbers nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    return root(nx * nx + ny * ny + nz * nz);
+// Twice, to be precise.
+Numbers areas(const Vector<Numbers>& a, const Vector<Numbers>& b, const Vector<Numbers>& c) {
+    const auto normals = cross(minus(b, a), minus(c, a));
+    return root(dot(normals, normals));
 }
 
 // The bits of positive numbers are in the order of the numbers; the last three of them tell the lane, so that the
@@ -64,8 +63,7 @@ std::span<const Polygon::Triangle> Polygon::cut() {
 
 void Polygon::cut_four() {
     const auto price = [&](std::size_t a, std::size_t b, std::size_t c) {
-        const Point& from = corners_[a].place;
-        const Point normal = cross(minus(corners_[b].place, from), minus(corners_[c].place, from));
+        const Spot from = place(a), normal = cross(minus(place(b), from), minus(place(c), from));
         return std::sqrt(dot(normal, normal));
     };
     const bool may_even = may_join(0, 2), may_odd = may_join(1, 3);
@@ -76,18 +74,11 @@ void Polygon::cut_four() {
     triangles_[1] = {first, first + 2, (first + 3) % 4};
 }
 
-// Relative to the first corner, where numbers are small.
-void Polygon::note_places(std::size_t size) {
-    for (std::size_t a = 0; a < 3; ++a) {
-        for (std::size_t n = 0; n < size; ++n) places_[a][n] = static_cast<float>(corners_[n].place[a] - corners_[0].place[a]);
-    }
-}
-
-std::array<Numbers, 3> Polygon::places(std::size_t first) const {
+Vector<Numbers> Polygon::places(std::size_t first) const {
     return {Numbers(places_[0].data() + first), Numbers(places_[1].data() + first), Numbers(places_[2].data() + first)};
 }
 
-std::array<Numbers, 3> Polygon::place(std::size_t n) const { return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])}; }
+Vector<Numbers> Polygon::in_all_lanes(std::size_t n) const { return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])}; }
 
 template <class Apex>
 void Polygon::list_triangles(std::size_t n, const Apex& apex) {
@@ -106,7 +97,6 @@ void Polygon::list_triangles(std::size_t n, const Apex& apex) {
 // What cut_long() does, with loops that the compiler unrolls: nearly all loops are as short.
 template <std::size_t n>
 void Polygon::cut_short() {
-    note_places(n);
     std::array<std::array<float, n>, n> cost{};
     std::array<std::array<std::uint8_t, n>, n> apex;
     const auto all = places(0);
@@ -114,7 +104,7 @@ void Polygon::cut_short() {
         constexpr std::size_t span = shorter + 2;
         for_constants<n - span>([&](auto first) {
             constexpr std::size_t i = first, j = i + span;
-            const auto prices = areas(place(i), all, place(j)).each();
+            const auto prices = areas(in_all_lanes(i), all, in_all_lanes(j)).each();
             std::uint32_t best = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max());
             for_constants<span - 1>([&](auto step) {
                 constexpr std::size_t k = i + 1 + step;
@@ -129,7 +119,6 @@ void Polygon::cut_short() {
 }
 
 void Polygon::cut_long() {
-    note_places(size_);
     cut_ears();
     for (std::size_t span = 3; span < size_; ++span) {
         for (std::size_t i = 0; i + span < size_; ++i) find_apex(i, i + span);
@@ -138,7 +127,7 @@ void Polygon::cut_long() {
     list_triangles(size_, [&](std::size_t i, std::size_t j) { return std::size_t{apex_[i * stride_ + j]}; });
 }
 
-void Polygon::set(std::size_t i, std::size_t j, float cost, std::size_t apex) {
+void Polygon::note(std::size_t i, std::size_t j, float cost, std::size_t apex) {
     cost_[i * stride_ + j] = cost_[j * stride_ + i] = j - i == size_ - 1 || may_join(i, j) ? cost : kIllegal;
     apex_[i * stride_ + j] = static_cast<std::uint16_t>(apex);
 }
@@ -147,23 +136,23 @@ void Polygon::cut_ears() {
     for (std::size_t i = 0; i + 1 < size_; ++i) cost_[i * stride_ + i + 1] = cost_[(i + 1) * stride_ + i] = 0;
     for (std::size_t first = 0; first + 2 < size_; first += kLanes<float>) {
         const auto found = areas(places(first), places(first + 1), places(first + 2)).each();
-        for (std::size_t i = first; i < std::min(first + kLanes<float>, size_ - 2); ++i) set(i, i + 2, found[i - first], i + 1);
+        for (std::size_t i = first; i < std::min(first + kLanes<float>, size_ - 2); ++i) note(i, i + 2, found[i - first], i + 1);
     }
 }
 
 void Polygon::find_apex(std::size_t i, std::size_t j) {
-    const auto from = place(i), to = place(j);
+    const auto from = in_all_lanes(i), to = in_all_lanes(j);
     std::uint32_t best = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::max());
     std::size_t apex = i + 1;
     for (std::size_t k = i + 1; k < j; k += kLanes<float>) {
         const Numbers price = Numbers(cost_.data() + i * stride_ + k) + Numbers(cost_.data() + j * stride_ + k) + areas(from, places(k), to);
-        const auto prices = choose(Numbers(kLaneNumbers.data()) < static_cast<float>(j - k), price, Numbers(kIllegal)).each();
+        const auto prices = choose(Numbers(kLaneNumbers<float>.data()) < static_cast<float>(j - k), price, Numbers(kIllegal)).each();
         std::uint32_t least = best;
         for (std::size_t lane = 0; lane < prices.size(); ++lane) least = std::min(least, tagged(prices[lane], lane));
         if (least < best) apex = k + (least & kLaneBits);
         best = least;
     }
-    set(i, j, std::bit_cast<float>(best), apex);
+    note(i, j, std::bit_cast<float>(best), apex);
 }
 
 }  // namespace isocore::climbing

@@ -13,12 +13,6 @@
 
 namespace isocore::climbing {
 
-struct Corner {
-    Point place;
-    unsigned faces;
-    std::int32_t vertex;
-};
-
 class Polygon {
   public:
     using Triangle = std::array<std::size_t, 3>;  // numbers of corners
@@ -27,9 +21,13 @@ class Polygon {
         if (corners_.size() < size) make_room(size);
         size_ = size;
     }
-    std::size_t size() const { return size_; }
-    Corner& operator[](std::size_t n) { return corners_[n]; }
-    const Corner& operator[](std::size_t n) const { return corners_[n]; }
+    // faces: those of the box that the corner lies on, a bit each.
+    void set(std::size_t n, const Spot& place, unsigned faces, std::int32_t vertex) {
+        for (std::size_t a = 0; a < 3; ++a) places_[a][n] = place[a];
+        corners_[n] = {faces, vertex};
+    }
+    Spot place(std::size_t n) const { return {places_[0][n], places_[1][n], places_[2][n]}; }
+    std::int32_t vertex(std::size_t n) const { return corners_[n].vertex; }
 
     // Its size() - 2 triangles, until the next time.
     std::span<const Triangle> cut();
@@ -39,22 +37,25 @@ class Polygon {
 
     void make_room(std::size_t size);
     bool may_join(std::size_t i, std::size_t j) const { return !(corners_[i].faces & corners_[j].faces); }
-    void note_places(std::size_t size);
-    std::array<Numbers, 3> places(std::size_t first) const;
-    std::array<Numbers, 3> place(std::size_t n) const;
+    Vector<Numbers> places(std::size_t first) const;
+    Vector<Numbers> in_all_lanes(std::size_t n) const;
     void cut_four();
     template <std::size_t n>
     void cut_short();
     void cut_long();
     void cut_ears();
     void find_apex(std::size_t i, std::size_t j);
-    void set(std::size_t i, std::size_t j, float cost, std::size_t apex);
+    void note(std::size_t i, std::size_t j, float cost, std::size_t apex);
     template <class Apex>
     void list_triangles(std::size_t n, const Apex& apex);
 
     std::size_t size_ = 0, stride_ = 0;
+    struct Corner {
+        unsigned faces;
+        std::int32_t vertex;
+    };
     std::vector<Corner> corners_;
-    std::array<std::vector<float>, 3> places_;
+    Vector<std::vector<float>> places_;  // of the corners, and room for all lanes
     // Of the part between corners i ... j and the line from i to j: the area of its best triangles, and the corner of the
     // one at that line.
     std::vector<float> cost_;

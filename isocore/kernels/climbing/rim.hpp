@@ -12,12 +12,6 @@
 
 namespace isocore::climbing {
 
-// A crossed grid edge: its axis and its lower sample.
-struct RimEdge {
-    int axis;
-    Place at;
-};
-
 // The crossed edges of a box, by its corner signs.
 inline constexpr std::array<std::uint16_t, 256> kCrossed = [] {
     std::array<std::uint16_t, 256> crossed{};
@@ -30,41 +24,38 @@ inline constexpr std::array<std::uint16_t, 256> kCrossed = [] {
     return crossed;
 }();
 
-// Where an edge of a box lies: along which axis, and at which ends of the box along the other two.
+// The ends of a box along each axis: low, high, low, ...
+using Ends = std::array<int, 6>;
+inline Ends ends_of(const HighRice& box) { return {box.low[0], box.high[0], box.low[1], box.high[1], box.low[2], box.high[2]}; }
+
+// Where an edge of a box lies: along which axis, at which of the ends along the other two, and its start as three of them.
 struct Side {
     std::uint8_t axis;
-    std::array<std::uint8_t, 2> across, high;
+    std::array<std::uint8_t, 2> ends;
+    std::array<std::uint8_t, 3> start;
 };
 inline constexpr std::array<Side, 12> kSides = [] {
     std::array<Side, 12> sides{};
     for (int edge = 0; edge < 12; ++edge) {
         const auto across = cube::other_axes(edge / 4);
-        sides[static_cast<std::size_t>(edge)] = {static_cast<std::uint8_t>(edge / 4),
-                                                 {static_cast<std::uint8_t>(across[0]), static_cast<std::uint8_t>(across[1])},
-                                                 {static_cast<std::uint8_t>(edge & 1), static_cast<std::uint8_t>(edge >> 1 & 1)}};
+        Side& side = sides[static_cast<std::size_t>(edge)];
+        side.axis = static_cast<std::uint8_t>(edge / 4);
+        for (unsigned a = 0; a < 3; ++a) side.start[a] = static_cast<std::uint8_t>(2 * a + (cube::low_corner(edge) >> a & 1));
+        side.ends = {side.start[static_cast<std::size_t>(across[0])], side.start[static_cast<std::size_t>(across[1])]};
     }
     return sides;
 }();
 
-// The one crossing on a crossed edge of a simple box.
-inline RimEdge box_crossing(const Site& site, const HighRice& box, std::size_t edge) {
-    const auto& [axis, across, high] = kSides[edge];
-    const std::array<const std::array<std::uint8_t, 3>*, 2> ends{&box.low, &box.high};
-    const int first = (*ends[high[0]])[across[0]], second = (*ends[high[1]])[across[1]];
-    RimEdge out{axis, {}};
-    out.at[across[0]] = first;
-    out.at[across[1]] = second;
-    out.at[axis] = std::countr_zero(site.lign(axis, first, second) & ~std::uint64_t{0} << box.low[axis]);
-    return out;
-}
-
-// Makes vertices of the crossings on the edges of a box; calls visit(number, edge) for those that were none.
+// Makes vertices of the crossings on the edges of a box; calls visit(number, axis, place) for those that were none.
 template <class Visit>
 void keep_edges(const Site& site, const HighRice& box, Layout& layout, const Visit& visit) {
+    const Ends ends = ends_of(box);
     for (unsigned left = kCrossed[site.corners(box)]; left; left &= left - 1) {
-        const RimEdge edge = box_crossing(site, box, static_cast<std::size_t>(std::countr_zero(left)));
-        const std::size_t number = site.crossing(edge.axis, edge.at);
-        if (layout.keep(number)) visit(number, edge);
+        const Side& side = kSides[static_cast<std::size_t>(std::countr_zero(left))];
+        Place at{ends[side.start[0]], ends[side.start[1]], ends[side.start[2]]};
+        while (!site.is_crossed(side.axis, at)) ++at[side.axis];
+        const std::size_t number = site.crossing(side.axis, at);
+        if (layout.keep(number)) visit(number, side.axis, at);
     }
 }
 

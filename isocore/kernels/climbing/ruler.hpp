@@ -5,79 +5,84 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "climbing/bars.hpp"
 #include "climbing/box_edges.hpp"
 #include "climbing/climb.hpp"
 #include "climbing/deviation.hpp"
-#include "climbing/drawn_site.hpp"
+#include "climbing/facets.hpp"
 #include "climbing/polygon.hpp"
-#include "common/edge_vertices.hpp"
+#include "climbing/spotter.hpp"
+#include "climbing/vectors.hpp"
 
 namespace isocore::climbing {
 
-template <class Sample, class Coordinate>
+template <class Sample>
 class Ruler {
   public:
-    Ruler(const GridView<Sample>& samples, const SignGrid& signs, const Options& options) : samples_(samples), signs_(signs), options_(options) {
-        const auto& s = options.spacing;
-        even_ = s[0] == s[1] && s[1] == s[2];
+    Ruler(const GridView<Sample>& samples, const SignGrid& signs, const Options& options)
+        : options_(options), unit_(*std::max_element(options.spacing.begin(), options.spacing.end())), spotter_(samples, signs, options.isovalue) {
+        for (std::size_t a = 0; a < 3; ++a) stretch_[a] = static_cast<float>(options.spacing[a] / unit_);
+        even_ = stretch_ == kNoStretch;
+        // In the units of the distances, and rounded down.
+        const double unit = options.in_world ? unit_ : 1;
+        limit_ = static_cast<float>(options.max_error / unit);
+        while (static_cast<double>(limit_) * unit > options.max_error) limit_ = std::nextafter(limit_, 0.0f);
     }
 
-    // Notes the deviations of a box, by its crossings that are not drawn. False if one breaks the bound.
-    bool measure(const DrawnSite& site, std::span<const Edge> dropped, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
+    // Notes the deviations of a box of the block at `origin`, by its crossings that are not drawn. The polygon is relative to
+    // the box. False if the box breaks the bound.
+    bool measure(const Dims& origin, const HighRice& box, std::span<const Edge> dropped, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
         if (dropped.empty()) return true;
-        const Point& origin = polygon[0].place;  // numbers are small when taken from there
-        prepare(in_voxels_, {1, 1, 1}, polygon, triangles);
-        if (!even_) prepare(in_world_, options_.spacing, polygon, triangles);
-        double largest = 0, largest_in_world = 0;
-        for (const Edge& edge : dropped) {
-            Point place = vertex(site, edge);
-            for (std::size_t a = 0; a < 3; ++a) place[a] -= origin[a];
-            largest = std::max(largest, add(voxels_, in_voxels_.squared_distance(place)));
-            if (even_) continue;
-            for (std::size_t a = 0; a < 3; ++a) place[a] *= options_.spacing[a];
-            largest_in_world = std::max(largest_in_world, add(world_, in_world_.squared_distance(place)));
-        }
-        if (options_.in_world) return (even_ ? largest * options_.spacing[0] : largest_in_world) <= options_.max_error;
-        return largest <= options_.max_error;
+        for (const Edge& edge : dropped) spotter_.add(origin, static_cast<int>(edge.axis()), edge.at());
+        prepare(in_voxels_, kNoStretch, polygon, triangles);
+        if (!even_) prepare(in_world_, stretch_, polygon, triangles);
+        bool broken = false;
+        const Spot low{static_cast<float>(box.low[0]), static_cast<float>(box.low[1]), static_cast<float>(box.low[2])};
+        spotter_.visit(low, kNoStretch, [&](Vector<Numbers> places, const Numbers&, std::size_t, std::size_t count) {
+            const auto distances = note(voxels_, in_voxels_, places, count);
+            if (even_ || !options_.in_world) broken |= (Numbers(limit_) < distances).any();
+            if (even_) return;
+            for (std::size_t a = 0; a < 3; ++a) places[a] = places[a] * stretch_[a];
+            const auto in_world = note(world_, in_world_, places, count);
+            if (options_.in_world) broken |= (Numbers(limit_) < in_world).any();
+        });
+        return !broken;
     }
 
     // Adds to a bar what was noted since the last time.
     void take(Bar& bar) {
-        const double spacing = options_.spacing[0];
-        if (even_) world_ = {voxels_.max * spacing, voxels_.sum * spacing, voxels_.squares * spacing * spacing};
-        add(bar.in_voxels, voxels_);
-        add(bar.in_world, world_);
+        add(bar.in_voxels, voxels_.sum_up(1));
+        add(bar.in_world, (even_ ? voxels_ : world_).sum_up(unit_));
         voxels_ = world_ = {};
     }
 
   private:
-    // Stretched by `scale`, and relative to the first corner.
-    static void prepare(Facets& facets, const Point& scale, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
-        const Point& origin = polygon[0].place;
+    using Numbers = Lanes<float>;
+    static constexpr Spot kNoStretch{1, 1, 1};
+
+    static void prepare(Facets& facets, const Spot& stretch, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
         facets.take(triangles.size(), [&](std::size_t triangle, std::size_t corner) {
-            const Point& place = polygon[triangles[triangle][corner]].place;
-            return Point{(place[0] - origin[0]) * scale[0], (place[1] - origin[1]) * scale[1], (place[2] - origin[2]) * scale[2]};
+            const Spot place = polygon.place(triangles[triangle][corner]);
+            return Spot{place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
         });
     }
 
-    // Marching cubes' vertex.
-    Point vertex(const DrawnSite& site, const Edge& edge) const {
-        const auto whole = [&](std::size_t a) { return site.origin[a] + edge.at[a]; };
-        std::array<Coordinate, 3> place;
-        write_vertex(samples_, signs_, options_.isovalue, edge.axis, whole(0), whole(1), whole(2), place.data());
-        return {place[0], place[1], place[2]};
+    static Numbers note(Tally& tally, const Facets& facets, const Vector<Numbers>& places, std::size_t count) {
+        const Numbers squared = facets.squared_distances(places, count), distances = root(squared);
+        tally.add(distances, squared);
+        return distances;
     }
 
-    const GridView<Sample>& samples_;
-    const SignGrid& signs_;
     const Options& options_;
-    bool even_;
-    Deviation voxels_, world_;  // noted
+    double unit_;   // of distances in the world: small numbers would have their squares lost
+    Spot stretch_;  // from samples to that unit
+    bool even_;     // is a voxel as long along all axes?
+    float limit_;
+    Tally voxels_, world_;
     Facets in_voxels_, in_world_;
+    Spotter<Sample> spotter_;
 };
 
 }  // namespace isocore::climbing

@@ -10,7 +10,6 @@
 
 #include "climbing/high_rice.hpp"
 #include "climbing/layout.hpp"
-#include "common/set_bits.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -58,29 +57,9 @@ class Site {
         for_rows([&](int j, int k) { find_crossings(j, k, samples); });
     }
 
-    // Makes lign() ready.
-    void lay_columns() {
-        struct Line {
-            std::size_t axis, start;
-            int place;
-        };
-        SetBits<Line, 64> found;
-        const auto lay = [&] {
-            found.visit([&](const Line& line, int i) { columns_[line.axis][line.start + static_cast<std::size_t>(i)] |= std::uint64_t{1} << line.place; });
-        };
-        for (auto& axis : columns_) std::fill_n(axis.begin(), stride_ * stride_, 0);
-        for_rows([&](int j, int k) {
-            const auto& crossed = row(j, k).crossed;
-            columns_[0][row_index(j, k)] = crossed[0];
-            found.add(crossed[1], {1, row_index(0, k), j});
-            if (found.full()) lay();
-            found.add(crossed[2], {2, row_index(0, j), k});
-            if (found.full()) lay();
-        });
-        lay();
-    }
-
     const Row& row(int j, int k) const { return rows_[row_index(j, k)]; }
+
+    bool is_crossed(std::size_t axis, const Place& at) const { return row(at[1], at[2]).crossed[axis] >> at[0] & 1; }
 
     // The number of a crossed edge.
     std::size_t crossing(int axis, const Place& at) const {
@@ -89,8 +68,7 @@ class Site {
         return here.first_crossing[a] + ones(here.crossed[a] & ((std::uint64_t{1} << at[0]) - 1));
     }
 
-    // The crossed edges of a lign, one bit per lower sample, by its place along the other two axes.
-    std::uint64_t lign(std::size_t axis, int first, int second) const { return columns_[axis][row_index(first, second)]; }
+    std::size_t samples() const { return static_cast<std::size_t>(stride_); }  // of a lign
 
     // The eight corner signs of a box, numbered as in cube.hpp.
     unsigned corners(const HighRice& box) const {
@@ -145,8 +123,6 @@ class Site {
     int stride_;
     std::array<Row, kRows> rows_;
     std::array<std::array<std::uint32_t, 3>, kRows> next_crossings_;  // what comes after the blocks that were loaded
-    // Crossed edges: along x, [k][j] and bit i; along y, [k][i] and bit j; along z, [j][i] and bit k.
-    std::array<std::array<std::uint64_t, kRows>, 3> columns_;
 };
 
 }  // namespace isocore::climbing

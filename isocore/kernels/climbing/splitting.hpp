@@ -114,10 +114,9 @@ inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vecto
     for (const auto& [origin, box] : late) {
         site->begin(signs, layout, origin[1], origin[2]);
         for (std::size_t x = 0; x <= origin[0]; x += static_cast<std::size_t>(block_size)) site->load(x);
-        site->lay_columns();
-        keep_edges(*site, box, layout, [&](std::size_t crossing, const RimEdge& edge) {
-            LateVertex& vertex = out.emplace_back(LateVertex{crossing, edge.axis, origin});
-            for (std::size_t a = 0; a < 3; ++a) vertex.at[a] += static_cast<std::size_t>(edge.at[a]);
+        keep_edges(*site, box, layout, [&](std::size_t crossing, int axis, const Place& at) {
+            LateVertex& vertex = out.emplace_back(LateVertex{crossing, axis, origin});
+            for (std::size_t a = 0; a < 3; ++a) vertex.at[a] += static_cast<std::size_t>(at[a]);
         });
     }
     std::sort(out.begin(), out.end(), [](const LateVertex& a, const LateVertex& b) { return a.crossing < b.crossing; });

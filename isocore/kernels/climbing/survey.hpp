@@ -48,18 +48,40 @@ class Survey {
     using Bits = DikeBits<N>;
     using Word = typename Bits::Word;
 
-    void take(const Block<N>& block) {
+    // What becomes of a box, as the price of what it yields: in half boxes, and more than two boxes if it must be split.
+    static constexpr int kNothing = 0, kAccepted = 2, kSplit = 5;
+
+    // further: is it to be known what the halves of boxes cost?
+    void take(const Block<N>& block, bool further) {
         mark(block);
         for (Label y = 1; y < 2 * N; ++y) judge(y, block.cells);
+        if (!further) return;
+        for (Label y = 1; y < 2 * N; ++y) price_halves(y);
     }
 
-    // What is known of all boxes over two dikes, a bit for each dike along x.
-    struct Verdicts {
-        Word nothing, highrice;  // does nothing cross the box, and may it be one highrice?
-    };
-    const Verdicts& verdicts(Label y, Label z) const { return verdicts_[y][z]; }
+    // By the labels of the dikes along y and z, and the bit of the one along x.
+    int price(Label y, Label z, int bit) const {
+        return kSplit - (kSplit - kNothing) * is(nothing_[y][z], bit) - (kSplit - kAccepted) * is(highrice_[y][z], bit);
+    }
+    // The price of both halves together, along the axis where it is least.
+    int price_of_halves(Label y, Label z, int bit) const {
+        int price = 2 * kSplit;
+        for (std::size_t n = kSteps; n-- > 0;) price -= kStep[n] * is(at_most_[n][y][z], bit);
+        return price;
+    }
 
   private:
+    static int is(Word boxes, int bit) { return static_cast<int>(boxes >> bit & 1); }
+
+    // What two halves may cost together, but for both being split.
+    static constexpr std::size_t kSteps = 5;
+    static constexpr std::array<int, kSteps + 1> kPrices{2 * kNothing, kNothing + kAccepted, 2 * kAccepted, kNothing + kSplit, kAccepted + kSplit, 2 * kSplit};
+    static constexpr std::array<int, kSteps> kStep = [] {
+        std::array<int, kSteps> steps{};
+        for (std::size_t n = 0; n < kSteps; ++n) steps[n] = kPrices[n + 1] - kPrices[n];
+        return steps;
+    }();
+
     // Marks of samples, or of steps from a sample to the next, by which of the two they are along y and z.
     enum Mark : std::size_t { x_in, x_out, y_in, y_out, z_in, z_out, alternating_xy, alternating_xz, alternating_yz, again_x, kMarks };
     static constexpr bool steps_along_y(std::size_t mark) { return mark == y_in || mark == y_out || mark == alternating_xy || mark == alternating_yz; }
@@ -134,10 +156,8 @@ class Survey {
     // Which ligns along z of plane j are crossed several times.
     void mark_again_z(std::size_t j) {
         DikeLine crossed, &again = again_z_[N + j];
-        for (std::size_t k = 0; k < N; ++k) {
-            crossed[N + k] = marks_[z_in][N + j][k] | marks_[z_out][N + j][k];
-            again[N + k] = 0;
-        }
+        again = {};
+        for (std::size_t k = 0; k < N; ++k) crossed[N + k] = marks_[z_in][N + j][k] | marks_[z_out][N + j][k];
         for (std::size_t z = N - 1; z >= 1; --z) {
             crossed[z] = crossed[2 * z] | crossed[2 * z + 1];
             again[z] = again[2 * z] | again[2 * z + 1] | (crossed[2 * z] & crossed[2 * z + 1]);
@@ -167,38 +187,50 @@ class Survey {
     // The same along z.
     static void sum_up_z(const Line& line, bool steps, DikeLine& out) {
         for (std::size_t k = 0; k < N; ++k) out[N + k] = steps ? line[k] : line[k] | line[k + 1];
-        for (std::size_t z = N - 1; z >= 1; --z) out[z] = out[2 * z] | out[2 * z + 1];
+        halve<N / 2>(out);
+    }
+    // From dikes along z to those twice as long, which there are `count` of, and so on; a template, so that loops over them
+    // vectorise.
+    template <std::size_t count>
+    static void halve(DikeLine& line) {
+        if constexpr (count > 0) {
+            for (std::size_t z = 0; z < count; ++z) line[count + z] = line[2 * count + 2 * z] | line[2 * count + 2 * z + 1];
+            halve<count / 2>(line);
+        } else {
+            line[0] = 0;
+        }
     }
 
-    // Answers for all boxes over dike y.
+    // Answers for all boxes over dike y. Loops take in the label 0, which no dike has, to be as long as registers.
     void judge(Label y, const std::array<int, 3>& cells) {
         std::array<DikeLine, kMarks> marks;
         DikeLine again, bad;
         const auto sum_up = [&](std::size_t m) { sum_up_z(marks_[m][y], steps_along_z(m), marks[m]); };
         sum_up_z(again_y_[y], false, again);
         sum_up(again_x);
-        for (std::size_t z = 1; z < 2 * N; ++z) bad[z] = marks[again_x][z] | Bits::over_samples(again[z] | again_z_[y][z]);
+        for (std::size_t z = 0; z < 2 * N; ++z) bad[z] = marks[again_x][z] | Bits::over_samples(again[z] | again_z_[y][z]);
         if (!plain_) {
             for (std::size_t m = alternating_xy; m <= alternating_yz; ++m) sum_up(m);
-            for (std::size_t z = 1; z < 2 * N; ++z) {
+            for (std::size_t z = 0; z < 2 * N; ++z) {
                 bad[z] |= Bits::over_steps(marks[alternating_xy][z] | marks[alternating_xz][z]) | Bits::over_samples(marks[alternating_yz][z]);
             }
         }
         DikeLine both_ways{};
         if (!one_way_) {
             for (std::size_t m = x_in; m <= z_out; ++m) sum_up(m);
-            for (std::size_t z = 1; z < 2 * N; ++z) {
+            for (std::size_t z = 0; z < 2 * N; ++z) {
                 both_ways[z] = Bits::over_steps(marks[x_in][z]) & Bits::over_steps(marks[x_out][z]) & Bits::over_samples(marks[y_in][z]) &
                                Bits::over_samples(marks[y_out][z]) & Bits::over_samples(marks[z_in][z]) & Bits::over_samples(marks[z_out][z]);
             }
         }
         const auto &low = corners_[static_cast<std::size_t>(Dike<N>::start(y))], &high = corners_[static_cast<std::size_t>(Dike<N>::end(y))];
-        for (std::size_t z = 1; z < 2 * N; ++z) {
+        for (std::size_t z = 0; z < 2 * N; ++z) {
             const BoxCorners<Word> box({low[0][z], low[1][z], high[0][z], high[1][z], low[2][z], low[3][z], high[2][z], high[3][z]});
-            verdicts_[y][z] = {~(box.crossed | bad[z]), box.disk & ~bad[z] & ~both_ways[z]};
+            nothing_[y][z] = ~(box.crossed | bad[z]);
+            highrice_[y][z] = box.disk & ~bad[z] & ~both_ways[z];
         }
         if (Dike<N>::is_unit(y)) {
-            for (std::size_t z = N; z < 2 * N; ++z) verdicts_[y][z].highrice |= ~verdicts_[y][z].nothing & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
+            for (std::size_t z = N; z < 2 * N; ++z) highrice_[y][z] |= ~nothing_[y][z] & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
         }
         set_beyond(y, cells);
     }
@@ -210,16 +242,49 @@ class Survey {
         for (Label z = 1; z < 2 * N; ++z) {
             const bool all = Dike<N>::start(y) >= cells[1] || Dike<N>::start(z) >= cells[2];
             const Word beyond = all ? ~Word{0} : x_beyond;
-            verdicts_[y][z].nothing |= beyond;
-            verdicts_[y][z].highrice &= ~beyond;
+            nothing_[y][z] |= beyond;
+            highrice_[y][z] &= ~beyond;
+        }
+    }
+
+    // Two halves of a box, and by each price whether they cost at most as much.
+    struct Halves {
+        Word nothing[2], highrice[2];
+
+        std::array<Word, kSteps> at_most() const {
+            const Word one_split = ~(nothing[0] | highrice[0]), other_split = ~(nothing[1] | highrice[1]), none_split = ~(one_split | other_split);
+            const Word any_nothing = nothing[0] | nothing[1];
+            return {nothing[0] & nothing[1], none_split & any_nothing, none_split, none_split | any_nothing, ~(one_split & other_split)};
+        }
+    };
+
+    // The least price is at most something if that along any axis is.
+    void price_halves(Label y) {
+        const DikeLine &nothing = nothing_[y], &highrice = highrice_[y];
+        for (std::size_t z = 0; z < 2 * N; ++z) {
+            const auto along_x = Halves{{Bits::with_lower_half(nothing[z]), Bits::with_upper_half(nothing[z])},
+                                        {Bits::with_lower_half(highrice[z]), Bits::with_upper_half(highrice[z])}}.at_most();
+            for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] = along_x[n];
+        }
+        for (std::size_t z = 0; z < N; ++z) {
+            const auto along_z = Halves{{nothing[2 * z], nothing[2 * z + 1]}, {highrice[2 * z], highrice[2 * z + 1]}}.at_most();
+            for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] |= along_z[n];
+        }
+        if (Dike<N>::is_unit(y)) return;
+        for (std::size_t z = 0; z < 2 * N; ++z) {
+            const auto along_y = Halves{{nothing_[2 * y][z], nothing_[2 * y + 1][z]}, {highrice_[2 * y][z], highrice_[2 * y + 1][z]}}.at_most();
+            for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] |= along_y[n];
         }
     }
 
     std::array<std::array<Line, 2 * N + 1>, kMarks> marks_;      // [mark][N + j], then [mark][y]
     std::array<Line, 2 * N> again_y_;                            // ligns along y crossed several times: [y][k]
     std::array<DikeLine, 2 * N + 1> again_z_;                    // along z: [N + j][z], then [y][z]
-    std::array<std::array<DikeLine, 4>, N + 1> corners_;         // [j][start or end along x, then along z][z]
-    std::array<std::array<Verdicts, 2 * N>, 2 * N> verdicts_;    // [y][z]
+    std::array<std::array<DikeLine, 4>, N + 1> corners_{};       // [j][start or end along x, then along z][z]
+    // A bit for each dike along x: does nothing cross the box, may it be one highrice, what do its halves cost? [y][z]
+    using Boxes = std::array<DikeLine, 2 * N>;
+    Boxes nothing_, highrice_;
+    std::array<Boxes, kSteps> at_most_;
     bool one_way_, plain_;  // are all ligns along some axis crossed in one direction, is no cell face alternating?
 };
 

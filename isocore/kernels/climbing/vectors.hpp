@@ -5,11 +5,26 @@
 
 namespace isocore::climbing {
 
-using Point = std::array<double, 3>;
+template <class Number>
+using Vector = std::array<Number, 3>;
 
-inline Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Point cross(const Point& a, const Point& b) {
+// A place in or near one block, where numbers are small.
+using Spot = Vector<float>;
+
+template <class Number>
+Vector<Number> minus(const Vector<Number>& a, const Vector<Number>& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+template <class Number>
+Vector<Number> times(const Number& factor, const Vector<Number>& a) {
+    return {factor * a[0], factor * a[1], factor * a[2]};
+}
+template <class Number>
+Number dot(const Vector<Number>& a, const Vector<Number>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class Number>
+Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 

@@ -28,19 +28,43 @@ inline std::uint64_t crossed_edges(const SignGrid& signs, int axis, std::size_t 
     return k + 1 < signs.dims[2] ? row[w] ^ signs.row(j, k + 1)[w] : 0;
 }
 
-// Where the grid edge along `axis` that starts at sample (i, j, k) is crossed, as a share of the way. An edge into the
-// padding is crossed next to the volume's own sample.
+// Where an edge into the padding is crossed: next to the volume's own sample. 0 for any other edge.
+inline double border_crossing(const SignGrid& signs, int axis, std::size_t i, std::size_t j, std::size_t k) {
+    if (!signs.pad) return 0;
+    const std::size_t start = axis == 0 ? i : axis == 1 ? j : k;
+    return start == 0 ? 1 - kClamp : start == signs.dims[static_cast<std::size_t>(axis)] - 2 ? kClamp : 0;
+}
+
+// The lower sample of a grid edge that is not in the padding.
+template <class Sample>
+const Sample* edge_start(const GridView<Sample>& samples, const SignGrid& signs, std::size_t i, std::size_t j, std::size_t k) {
+    return samples.data + samples.index(i - signs.pad, j - signs.pad, k - signs.pad);
+}
+
+// Where the grid edge along `axis` that starts at sample (i, j, k) is crossed, as a share of the way.
 template <class Sample>
 double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
                      std::size_t k) {
-    const std::size_t pad = signs.pad;
-    if (pad) {
-        const std::size_t start = axis == 0 ? i : axis == 1 ? j : k;
-        if (start == 0) return 1 - kClamp;
-        if (start == signs.dims[static_cast<std::size_t>(axis)] - 2) return kClamp;
-    }
-    const Sample* low = samples.data + samples.index(i - pad, j - pad, k - pad);
+    if (const double share = border_crossing(signs, axis, i, j, k); share > 0) return share;
+    const Sample* low = edge_start(samples, signs, i, j, k);
     return crossing(low[0], low[samples.step(axis)], isovalue);
+}
+
+// The same as a quotient that is yet to be divided and clamped, for those who do so with several at once.
+struct Quotient {
+    float part, whole;
+};
+template <class Sample>
+Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
+                       std::size_t k) {
+    if constexpr (std::is_integral_v<Sample>) {
+        if (const double share = border_crossing(signs, axis, i, j, k); share > 0) return {static_cast<float>(share), 1};
+        const Sample* low = edge_start(samples, signs, i, j, k);
+        const double from = static_cast<double>(low[0]);
+        return {static_cast<float>(isovalue - from), static_cast<float>(static_cast<double>(low[samples.step(axis)]) - from)};
+    } else {
+        return {static_cast<float>(edge_crossing(samples, signs, isovalue, axis, i, j, k)), 1};
+    }
 }
 
 // Writes the vertex on that edge, and returns its end.

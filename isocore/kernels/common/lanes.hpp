@@ -16,6 +16,13 @@ namespace isocore {
 template <class T>
 inline constexpr std::size_t kLanes = 32 / sizeof(T);
 
+template <class T>
+inline constexpr auto kLaneNumbers = [] {
+    std::array<T, kLanes<T>> numbers;
+    for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = static_cast<T>(n);
+    return numbers;
+}();
+
 #if defined(__AVX2__)
 
 // By the lanes of a mask, one bit each: their numbers, first of all.
@@ -43,6 +50,8 @@ struct LaneRegister<float> {
     static Type multiply(Type a, Type b) { return _mm256_mul_ps(a, b); }
     static Type divide(Type a, Type b) { return _mm256_div_ps(a, b); }
     static Type root(Type a) { return _mm256_sqrt_ps(a); }
+    static Type least(Type a, Type b) { return _mm256_min_ps(b, a); }
+    static Type greatest(Type a, Type b) { return _mm256_max_ps(b, a); }
     static Type less(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
     static Type not_above(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static Type equal(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
@@ -51,6 +60,13 @@ struct LaneRegister<float> {
     static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_ps(b, a, mask); }
     static bool any(Type mask) { return _mm256_movemask_ps(mask) != 0; }
     static unsigned bits(Type mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
+    static float first(Type a) { return _mm256_cvtss_f32(a); }
+    static Type rotate(Type a) { return _mm256_permutevar8x32_ps(a, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0)); }
+    template <std::size_t distance>
+    static Type swap(Type a) {
+        if constexpr (distance == 4) return _mm256_permute2f128_ps(a, a, 1);
+        else return _mm256_permute_ps(a, distance == 2 ? 0x4e : 0xb1);
+    }
     static void pack(Type a, unsigned bits, float* to) {
         const auto order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPackedLanes[bits].data()));
         _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, order));
@@ -67,6 +83,8 @@ struct LaneRegister<double> {
     static Type multiply(Type a, Type b) { return _mm256_mul_pd(a, b); }
     static Type divide(Type a, Type b) { return _mm256_div_pd(a, b); }
     static Type root(Type a) { return _mm256_sqrt_pd(a); }
+    static Type least(Type a, Type b) { return _mm256_min_pd(b, a); }
+    static Type greatest(Type a, Type b) { return _mm256_max_pd(b, a); }
     static Type less(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
     static Type not_above(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
     static Type equal(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
@@ -96,6 +114,8 @@ struct LaneRegister {
     static Type multiply(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
     static Type divide(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] / b[n]; }); }
     static Type root(const Type& a) { return each([&](std::size_t n) { return std::sqrt(a[n]); }); }
+    static Type least(const Type& a, const Type& b) { return each([&](std::size_t n) { return b[n] < a[n] ? b[n] : a[n]; }); }
+    static Type greatest(const Type& a, const Type& b) { return each([&](std::size_t n) { return b[n] > a[n] ? b[n] : a[n]; }); }
     static Type less(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] < b[n]); }); }
     static Type not_above(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] <= b[n]); }); }
     static Type equal(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] == b[n]); }); }
@@ -105,6 +125,14 @@ struct LaneRegister {
         return each([&](std::size_t n) { return mask[n] != 0 ? a[n] : b[n]; });
     }
     static bool any(const Type& mask) { return bits(mask) != 0; }
+    static T first(const Type& a) { return a[0]; }
+    static Type rotate(const Type& a) {
+        return each([&](std::size_t n) { return a[(n + 1) % kLanes<T>]; });
+    }
+    template <std::size_t distance>
+    static Type swap(const Type& a) {
+        return each([&](std::size_t n) { return a[n ^ distance]; });
+    }
     static unsigned bits(const Type& mask) {
         unsigned out = 0;
         for (std::size_t n = 0; n < kLanes<T>; ++n) out |= static_cast<unsigned>(mask[n] != 0) << n;
@@ -147,6 +175,19 @@ struct Lanes {
         return out;
     }
 
+    T first() const { return Register::first(lanes); }
+    // Each lane where the one before was, and the first one last.
+    Lanes rotated() const { return Lanes(Register::rotate(lanes)); }
+
+    // The rule over all lanes: first of those that are half of all apart, at last of neighbours.
+    template <class Rule>
+    T fold(const Rule& rule) const {
+        return folded<kLanes<T> / 2>(*this, rule);
+    }
+    T sum() const { return fold([](const Lanes& a, const Lanes& b) { return a + b; }); }
+    T least_lane() const { return fold([](const Lanes& a, const Lanes& b) { return least(a, b); }); }
+    T greatest_lane() const { return fold([](const Lanes& a, const Lanes& b) { return greatest(a, b); }); }
+
     // Writes the lanes that have a bit, one after the other; what follows them in the room for all lanes is lost.
     void pack(unsigned bits, T* to) const { Register::pack(lanes, bits, to); }
 
@@ -158,9 +199,21 @@ struct Lanes {
     friend LaneMask<T> operator<(const Lanes& a, const Lanes& b) { return {Register::less(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator<=(const Lanes& a, const Lanes& b) { return {Register::not_above(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator==(const Lanes& a, const Lanes& b) { return {Register::equal(a.lanes, b.lanes)}; }
+    // The first `count` lanes of a, and the others of b.
+    friend Lanes first_lanes(const Lanes& a, std::size_t count, const Lanes& b) {
+        return choose(Lanes(kLaneNumbers<T>.data()) < static_cast<T>(count), a, b);
+    }
     friend Lanes choose(const LaneMask<T>& mask, const Lanes& a, const Lanes& b) { return Lanes(Register::choose(mask.lanes, a.lanes, b.lanes)); }
-    friend Lanes least(const Lanes& a, const Lanes& b) { return choose(b < a, b, a); }
-    friend Lanes greatest(const Lanes& a, const Lanes& b) { return choose(a < b, b, a); }
+    // Lanes of b that are no numbers are passed over.
+    friend Lanes least(const Lanes& a, const Lanes& b) { return Lanes(Register::least(a.lanes, b.lanes)); }
+    friend Lanes greatest(const Lanes& a, const Lanes& b) { return Lanes(Register::greatest(a.lanes, b.lanes)); }
+
+  private:
+    template <std::size_t distance, class Rule>
+    static T folded(const Lanes& a, const Rule& rule) {
+        if constexpr (distance == 0) return Register::first(a.lanes);
+        else return folded<distance / 2>(rule(a, Lanes(Register::template swap<distance>(a.lanes))), rule);
+    }
 };
 
 }  // namespace isocore
