@@ -37,10 +37,7 @@ class Gatherer final : public Judge {
 
     void gather(const Site& site, Clouds& clouds, Ligns& ligns) const override {
         struct Row {
-            int axis, j, k;
-            std::size_t edge, step;  // the number of the first edge, and how far the next one's is from it
-            std::size_t lign;        // the first of those across the row
-            std::uint64_t bit;       // of the edge in each of them
+            std::uint8_t axis, j, k;
         };
         SetBits<Row, 64> found;
         Spotter<Sample> spotter(samples_, signs_, isovalue_);
@@ -51,27 +48,23 @@ class Gatherer final : public Judge {
         const auto add = [&] {
             std::size_t size = 0;
             found.visit([&](const Row& row, int i) {
-                const Place at{i, row.j, row.k};
-                spotter.add(site.origin, row.axis, at);
-                edges[size++] = static_cast<std::uint32_t>(row.edge + row.step * static_cast<std::size_t>(i));
-                ligns.crossed[row.lign + static_cast<std::size_t>(i)] |= row.bit;
+                const int j = row.j, k = row.k;
+                spotter.add(site.origin, row.axis, {i, j, k});
+                const int first = row.axis == 0 ? j : i, second = row.axis == 2 ? j : k, along = row.axis == 0 ? i : row.axis == 1 ? j : k;
+                const std::size_t lign = Ligns::lign(samples, row.axis, first, second);
+                ligns.crossed[lign] |= std::uint64_t{1} << along;
+                edges[size++] = static_cast<std::uint32_t>(Ligns::edge(samples, lign, along));
             });
-            spotter.visit({}, scale, [&](const auto& places, const auto& found_shares, std::size_t first, std::size_t count) {
+            spotter.visit({}, scale, [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
                 clouds.add(places, count);
-                const auto each = found_shares.each();
-                for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[first + n]] = each[n];
+                const auto each = shares.each();
+                for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];
             });
         };
         for (int k = 0; k <= site.cells[2]; ++k) {
             for (int j = 0; j <= site.cells[1]; ++j) {
-                const auto& crossed = site.row(j, k).crossed;
-                const std::size_t along_row = Ligns::lign(samples, 0, j, k), along_y = Ligns::lign(samples, 1, 0, k), along_z = Ligns::lign(samples, 2, 0, j);
-                ligns.crossed[along_row] = crossed[0];
-                const std::array<Row, 3> rows{Row{0, j, k, Ligns::edge(samples, along_row, 0), 1, along_row, 0},
-                                              Row{1, j, k, Ligns::edge(samples, along_y, j), samples, along_y, std::uint64_t{1} << j},
-                                              Row{2, j, k, Ligns::edge(samples, along_z, k), samples, along_z, std::uint64_t{1} << k}};
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    found.add(crossed[axis], rows[axis]);
+                for (std::uint8_t axis = 0; axis < 3; ++axis) {
+                    found.add(site.row(j, k).crossed[axis], {axis, static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k)});
                     if (found.full()) add();
                 }
             }

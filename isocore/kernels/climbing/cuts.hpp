@@ -40,13 +40,23 @@ class Cuts {
     }
 
     void keep(const Site& site, Layout& layout) const {
+        struct Part {
+            std::uint64_t crossed, cut;
+            std::size_t first;
+        };
+        std::array<Part, 3 * (N + 1) * (N + 1) + 1> parts;  // those where anything is to be kept, found without a branch for each
+        Part* end = parts.data();
         for (int k = 0; k <= site.cells[2]; ++k) {
             for (int j = 0; j <= site.cells[1]; ++j) {
                 const Site::Row& row = site.row(j, k);
                 const auto& cuts = rows_[index(j, k)];
-                for (std::size_t axis = 0; axis < 3; ++axis) layout.keep(row.crossed[axis], cuts[axis], row.first_crossing[axis]);
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    *end = {row.crossed[axis], cuts[axis], row.first_crossing[axis]};
+                    end += (end->crossed & end->cut) != 0;
+                }
             }
         }
+        for (const Part* part = parts.data(); part != end; ++part) layout.keep(part->crossed, part->cut, part->first);
     }
 
   private:

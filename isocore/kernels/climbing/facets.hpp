@@ -94,10 +94,10 @@ class Facets {
         const auto a = corner(0), bottom = minus(corner(1), a), left = minus(corner(2), a);
         const Numbers one(1.0f), length = root(dot(bottom, bottom));
         const auto along = times(one / length, bottom);
-        const auto across_only = [&](const Vector<Numbers>& v) { return minus(v, times(dot(v, along), along)); };
-        const auto to_unit = [&](const Vector<Numbers>& v) { return times(one / root(dot(v, v)), v); };
-        const auto across = to_unit(across_only(to_unit(across_only(left))));
-        const Numbers u = dot(left, along), v = dot(left, across);
+        const Numbers u = dot(left, along);
+        const auto first_try = minus(left, times(u, along)), rise = minus(first_try, times(dot(first_try, along), along));
+        const Numbers v = root(dot(rise, rise));
+        const auto across = times(one / v, rise);
         const auto set = [&](std::size_t what, const Numbers& numbers) { numbers.store(frames[what].data()); };
         const std::array<Vector<Numbers>, 3> axes{along, across, cross(along, across)};
         for (std::size_t n = 0; n < 9; ++n) set(kAxes + n, axes[n / 3][n % 3]);

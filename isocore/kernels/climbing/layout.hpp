@@ -58,7 +58,6 @@ class Layout {
 
     // Keeps those of some crossed edges that are cut, if the first of them is the crossing `first`.
     void keep(std::uint64_t crossed, std::uint64_t cut, std::size_t first) {
-        if ((crossed & cut) == 0) return;
         const std::uint64_t bits = extract_bits(cut, crossed);
         add(first / 64, bits << first % 64);
         if (first % 64 != 0) add(first / 64 + 1, bits >> (64 - first % 64));
@@ -76,7 +75,7 @@ class Layout {
     // Those of some crossed edges that are kept, if the first of them is the crossing `first`.
     std::uint64_t kept(std::uint64_t crossed, std::size_t first) const {
         std::uint64_t bits = kept_[first / 64].load(std::memory_order_relaxed) >> first % 64;
-        if (first % 64 != 0) bits |= kept_[first / 64 + 1].load(std::memory_order_relaxed) << (64 - first % 64);
+        bits |= kept_[first / 64 + 1].load(std::memory_order_relaxed) << 1 << (63 - first % 64);
         return deposit_bits(bits, crossed);
     }
 

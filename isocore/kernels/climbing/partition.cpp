@@ -25,9 +25,9 @@ class Partition {
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
         : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
 
-    // Adds a block to its bar, unless all its samples lie on one side. A bar's blocks come in their order.
+    // Adds a block to its bar. A bar's blocks come in their order; only those whose samples lie on one side may be left out.
     void climb(const Dims& origin, BarBoxes& bar) {
-        if (!block_.load(signs_, origin)) return;
+        block_.load(signs_, origin);
         survey_.take(block_, !judge_);
         if (bar.blocks.empty()) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
@@ -239,8 +239,11 @@ class Partition {
 template <int N>
 BarBoxes partition_bar(const SignGrid& signs, std::size_t y, std::size_t z, const Judge* judge, Layout& layout) {
     const auto partition = std::make_unique<Partition<N>>(signs, layout, judge);
+    const BarShadow shadow(signs, N, N * y, N * z);
     BarBoxes out;
-    for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) partition->climb({x, N * y, N * z}, out);
+    for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) {
+        if (shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x))) partition->climb({x, N * y, N * z}, out);
+    }
     out.boxes.shrink_to_fit();
     out.cell_rows.shrink_to_fit();
     return out;

@@ -36,16 +36,17 @@ class Ruler {
     bool measure(const Dims& origin, const HighRice& box, std::span<const Edge> dropped, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
         if (dropped.empty()) return true;
         for (const Edge& edge : dropped) spotter_.add(origin, static_cast<int>(edge.axis()), edge.at());
-        prepare(in_voxels_, kNoStretch, polygon, triangles);
-        if (!even_) prepare(in_world_, stretch_, polygon, triangles);
+        const auto corner = [&](std::size_t triangle, std::size_t c) { return polygon.place(triangles[triangle][c]); };
+        in_voxels_.take(triangles.size(), corner);
+        if (!even_) in_world_.take(triangles.size(), [&](std::size_t triangle, std::size_t c) { return stretched(corner(triangle, c), stretch_); });
         bool broken = false;
         const Spot low{static_cast<float>(box.low[0]), static_cast<float>(box.low[1]), static_cast<float>(box.low[2])};
-        spotter_.visit(low, kNoStretch, [&](Vector<Numbers> places, const Numbers&, std::size_t, std::size_t count) {
+        spotter_.visit(low, kNoStretch, [&](const Vector<Numbers>& places, const Numbers&, std::size_t, std::size_t count) {
             const auto distances = note(voxels_, in_voxels_, places, count);
             if (even_ || !options_.in_world) broken |= (Numbers(limit_) < distances).any();
             if (even_) return;
-            for (std::size_t a = 0; a < 3; ++a) places[a] = places[a] * stretch_[a];
-            const auto in_world = note(world_, in_world_, places, count);
+            const Vector<Numbers> stretch{stretch_[0], stretch_[1], stretch_[2]};
+            const auto in_world = note(world_, in_world_, stretched(places, stretch), count);
             if (options_.in_world) broken |= (Numbers(limit_) < in_world).any();
         });
         return !broken;
@@ -62,11 +63,9 @@ class Ruler {
     using Numbers = Lanes<float>;
     static constexpr Spot kNoStretch{1, 1, 1};
 
-    static void prepare(Facets& facets, const Spot& stretch, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
-        facets.take(triangles.size(), [&](std::size_t triangle, std::size_t corner) {
-            const Spot place = polygon.place(triangles[triangle][corner]);
-            return Spot{place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
-        });
+    template <class Number>
+    static Vector<Number> stretched(const Vector<Number>& place, const Vector<Number>& stretch) {
+        return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
     }
 
     static Numbers note(Tally& tally, const Facets& facets, const Vector<Numbers>& places, std::size_t count) {
