@@ -55,7 +55,7 @@ class Gatherer final : public Judge {
                 ligns.crossed[lign] |= std::uint64_t{1} << along;
                 edges[size++] = static_cast<std::uint32_t>(Ligns::edge(samples, lign, along));
             });
-            spotter.visit({}, scale, [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
+            spotter.visit(scale, [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
                 clouds.add(places, count);
                 const auto each = shares.each();
                 for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];

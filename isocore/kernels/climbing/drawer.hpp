@@ -44,8 +44,8 @@ class Drawer {
             site_.load(origin[0]);
             for (const HighRice& box : boxes) {
                 out = draw_disk(box, out);
-                if (options_.measured && !ruler_.measure(site_.origin, box, edges_.dropped(), polygon_, triangles_)) {
-                    bar.broken.push_back(static_cast<std::size_t>(&box - bar.boxes.data()));
+                if (options_.measured) {
+                    ruler_.add(site_.origin, box, static_cast<std::size_t>(&box - bar.boxes.data()), edges_.dropped(), polygon_, triangles_, bar);
                 }
             }
             for (const CellRow& row : cell_rows) out = draw_cells(bar, row, out);

@@ -1,4 +1,4 @@
-// ruler.hpp - Measures highrices: how far the crossings in a box that are not drawn lie from its triangles.
+// ruler.hpp - Measures highrices, many at a time: how far the crossings in a box that are not drawn lie from its triangles.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "climbing/bars.hpp"
 #include "climbing/box_edges.hpp"
@@ -31,47 +32,72 @@ class Ruler {
         while (static_cast<double>(limit_) * unit > options.max_error) limit_ = std::nextafter(limit_, 0.0f);
     }
 
-    // Notes the deviations of a box of the block at `origin`, by its crossings that are not drawn. The polygon is relative to
-    // the box. False if the box breaks the bound.
-    bool measure(const Dims& origin, const HighRice& box, std::span<const Edge> dropped, const Polygon& polygon, std::span<const Polygon::Triangle> triangles) {
-        if (dropped.empty()) return true;
-        for (const Edge& edge : dropped) spotter_.add(origin, static_cast<int>(edge.axis()), edge.at());
-        const auto corner = [&](std::size_t triangle, std::size_t c) { return polygon.place(triangles[triangle][c]); };
-        in_voxels_.take(triangles.size(), corner);
-        if (!even_) in_world_.take(triangles.size(), [&](std::size_t triangle, std::size_t c) { return stretched(corner(triangle, c), stretch_); });
-        bool broken = false;
-        const Spot low{static_cast<float>(box.low[0]), static_cast<float>(box.low[1]), static_cast<float>(box.low[2])};
-        spotter_.visit(low, kNoStretch, [&](const Vector<Numbers>& places, const Numbers&, std::size_t, std::size_t count) {
-            const auto distances = note(voxels_, in_voxels_, places, count);
-            if (even_ || !options_.in_world) broken |= (Numbers(limit_) < distances).any();
-            if (even_) return;
-            const Vector<Numbers> stretch{stretch_[0], stretch_[1], stretch_[2]};
-            const auto in_world = note(world_, in_world_, stretched(places, stretch), count);
-            if (options_.in_world) broken |= (Numbers(limit_) < in_world).any();
-        });
-        return !broken;
+    // Notes a box of the block at `origin`, the one of that number in its bar, and its crossings that are not drawn. The
+    // polygon is relative to the box.
+    void add(const Dims& origin, const HighRice& box, std::size_t number, std::span<const Edge> dropped, const Polygon& polygon,
+             std::span<const Polygon::Triangle> triangles, Bar& bar) {
+        if (dropped.empty()) return;
+        if (spotter_.size() + dropped.size() > Spotter<Sample>::kRoom || in_voxels_.size() + triangles.size() > Facets::kRoom) measure(bar);
+        for (const Edge& edge : dropped) spotter_.add(origin, static_cast<int>(edge.axis()), edge.at(), box.low);
+        for (const Polygon::Triangle& triangle : triangles) {
+            const Spot a = polygon.place(triangle[0]), b = polygon.place(triangle[1]), c = polygon.place(triangle[2]);
+            in_voxels_.add(a, b, c);
+            if (!even_) in_world_.add(stretched(a, stretch_), stretched(b, stretch_), stretched(c, stretch_));
+        }
+        boxes_.push_back({number, triangles.size(), dropped.size()});
+        if (in_voxels_.size() > kWorthwhile) measure(bar);
     }
 
     // Adds to a bar what was noted since the last time.
     void take(Bar& bar) {
-        add(bar.in_voxels, voxels_.sum_up(1));
-        add(bar.in_world, (even_ ? voxels_ : world_).sum_up(unit_));
+        measure(bar);
+        isocore::climbing::add(bar.in_voxels, voxels_.sum_up(1));
+        isocore::climbing::add(bar.in_world, (even_ ? voxels_ : world_).sum_up(unit_));
         voxels_ = world_ = {};
     }
 
   private:
     using Numbers = Lanes<float>;
+    using Row = std::array<float, Spotter<Sample>::kRoom + kLanes<float>>;
     static constexpr Spot kNoStretch{1, 1, 1};
+    static constexpr std::size_t kWorthwhile = 96;  // triangles
 
-    template <class Number>
-    static Vector<Number> stretched(const Vector<Number>& place, const Vector<Number>& stretch) {
-        return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
+    struct Box {
+        std::size_t number, triangles, crossings;
+    };
+
+    static Spot stretched(const Spot& place, const Spot& stretch) { return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]}; }
+
+    // Measures the boxes that were added. Those that break the bound are noted in bar.broken.
+    void measure(Bar& bar) {
+        spotter_.visit(kNoStretch, [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                places[a].store(places_[a].data() + first);
+                if (!even_) (places[a] * stretch_[a]).store(places_in_world_[a].data() + first);
+            }
+        });
+        Bar* const judged = std::isfinite(limit_) ? &bar : nullptr;
+        measure(in_voxels_, places_, voxels_, even_ || !options_.in_world ? judged : nullptr);
+        if (!even_) measure(in_world_, places_in_world_, world_, options_.in_world ? judged : nullptr);
+        boxes_.clear();
     }
 
-    static Numbers note(Tally& tally, const Facets& facets, const Vector<Numbers>& places, std::size_t count) {
-        const Numbers squared = facets.squared_distances(places, count), distances = root(squared);
-        tally.add(distances, squared);
-        return distances;
+    void measure(Facets& facets, const Vector<Row>& places, Tally& tally, Bar* bar) {
+        facets.find_frames();
+        std::size_t triangle = 0, crossing = 0;
+        for (const Box& box : boxes_) {
+            float* const squared = squared_.data() + crossing;
+            const Vector<const float*> points{places[0].data() + crossing, places[1].data() + crossing, places[2].data() + crossing};
+            facets.squared_distances(triangle, box.triangles, points, box.crossings, squared);
+            if (bar && std::sqrt(*std::max_element(squared, squared + box.crossings)) > limit_) bar->broken.push_back(box.number);
+            triangle += box.triangles;
+            crossing += box.crossings;
+        }
+        for (std::size_t n = 0; n < crossing; n += kLanes<float>) {
+            const Numbers squared = first_lanes(Numbers(squared_.data() + n), std::min(kLanes<float>, crossing - n), 0.0f);
+            tally.add(root(squared), squared);
+        }
+        facets.clear();
     }
 
     const Options& options_;
@@ -82,6 +108,9 @@ class Ruler {
     Tally voxels_, world_;
     Facets in_voxels_, in_world_;
     Spotter<Sample> spotter_;
+    std::vector<Box> boxes_;
+    Vector<Row> places_, places_in_world_;  // of the crossings, relative to their boxes
+    Row squared_;                           // distances
 };
 
 }  // namespace isocore::climbing

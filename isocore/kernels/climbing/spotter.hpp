@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "climbing/site.hpp"
 #include "climbing/vectors.hpp"
@@ -23,10 +24,12 @@ class Spotter {
 
     Spotter(const GridView<Sample>& samples, const SignGrid& signs, double isovalue) : samples_(samples), signs_(signs), isovalue_(isovalue) {}
 
-    // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`.
-    void add(const Dims& origin, int axis, const Place& at) {
+    std::size_t size() const { return size_; }
+
+    // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`, as seen from the sample `from`.
+    void add(const Dims& origin, int axis, const Place& at, const std::array<std::uint8_t, 3>& from = {}) {
         const auto whole = [&](std::size_t a) { return origin[a] + static_cast<std::size_t>(at[a]); };
-        for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(at[a]);
+        for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(at[a] - from[a]);
         axes_[size_] = static_cast<float>(axis);
         const Quotient crossing = edge_quotient(samples_, signs_, isovalue_, axis, whole(0), whole(1), whole(2));
         parts_[size_] = crossing.part;
@@ -34,9 +37,9 @@ class Spotter {
     }
 
     // Calls visit(places, shares, first, count) for all that were added, in their order, `count` lanes at a time, and forgets
-    // them. The places are relative to a sample of the block, and stretched; the shares are of the edges' ways.
+    // them. The places are stretched; the shares are of the edges' ways.
     template <class Visit>
-    void visit(const Spot& from, const Spot& scale, const Visit& visit) {
+    void visit(const Spot& scale, const Visit& visit) {
         const Numbers zero(0.0f), lowest(static_cast<float>(kClamp)), highest(static_cast<float>(1 - kClamp));
         for (std::size_t n = 0; n < size_; n += kLanes<float>) {
             const Numbers share = least(highest, greatest(lowest, Numbers(parts_.data() + n) / Numbers(wholes_.data() + n)));
@@ -44,7 +47,7 @@ class Spotter {
             Vector<Numbers> places;
             for (std::size_t a = 0; a < 3; ++a) {
                 const Numbers along = choose(axis == static_cast<float>(a), share, zero);
-                places[a] = (Numbers(starts_[a].data() + n) - from[a] + along) * scale[a];
+                places[a] = (Numbers(starts_[a].data() + n) + along) * scale[a];
             }
             visit(places, share, n, std::min(kLanes<float>, size_ - n));
         }
