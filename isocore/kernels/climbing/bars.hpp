@@ -1,4 +1,4 @@
-// bars.hpp - What is known of the rows of blocks, and what concerns all of them: marks, room for triangles, sums.
+// bars.hpp - What is known of the rows of blocks, and what concerns all of them: marks, places of triangles, sums.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 
 #include "climbing/climb.hpp"
 #include "climbing/deviation.hpp"
-#include "climbing/layout.hpp"
 #include "climbing/partition.hpp"
 #include "common/signs.hpp"
 
@@ -19,7 +18,7 @@ namespace isocore::climbing {
 
 // What is known of a row of blocks along the first axis.
 struct Bar : BarBoxes {
-    std::size_t first_triangle = 0, triangles = 0, capacity = 0;  // of the triangle array
+    std::size_t first_triangle = 0, triangles = 0;  // of the triangle array
     std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
     std::size_t split_again = 0;
     std::vector<std::size_t> broken;  // boxes that break the error bound
@@ -31,7 +30,6 @@ struct Bars {
     Dims blocks;
     std::size_t block_size;
     std::vector<Bar> bars;  // [z][y]
-    std::size_t triangles_at_most = 0;
 
     // Calls visit(origin, boxes, rows of single cells) for every visited block of a bar.
     template <class Visit>
@@ -65,47 +63,14 @@ inline Bars lay_out_bars(const SignGrid& signs, int block_size) {
     return out;
 }
 
-// Vertices of a row's edges along each axis.
-inline std::array<std::uint32_t, 3> count_vertices(const SignGrid& signs, const Layout& layout, std::size_t j, std::size_t k) {
-    std::array<std::uint32_t, 3> counts = count_crossings(signs, j, k);
-    std::size_t first = layout.first_crossing(j, k);
-    for (std::uint32_t& count : counts) {
-        const std::size_t end = first + count;
-        count = layout.count(first, end);
-        first = end;
-    }
-    return counts;
-}
-
-// How many triangles a bar draws at most: a loop of n vertices gives n - 2, and a vertex lies on at most four boxes,
-// two of one bar if it lies on the bar's side, and one on the bar's edge. Never less than it was before, and looked at
-// only where bars are stale.
-inline void bound_triangles(const SignGrid& signs, const Layout& layout, Bars& bars) {
-    const std::size_t size = bars.block_size, last_j = signs.dims[1] - 1, last_k = signs.dims[2] - 1;
-    const auto corners_in = [&](std::size_t bar) {
-        const std::size_t j0 = size * (bar % bars.blocks[1]), j1 = std::min(j0 + size, last_j);
-        const std::size_t k0 = size * (bar / bars.blocks[1]), k1 = std::min(k0 + size, last_k);
-        std::size_t corners = 0;
-        for (std::size_t k = k0; k <= k1; ++k) {
-            for (std::size_t j = j0; j <= j1; ++j) {
-                if (layout.vertices_in(j, k) == 0) continue;
-                const std::size_t sides_j = j == j0 || j == j1 ? 1 : 2, sides_k = k == k0 || k == k1 ? 1 : 2;
-                const auto counts = count_vertices(signs, layout, j, k);
-                corners += counts[0] * sides_j * sides_k;
-                if (j < j1) corners += counts[1] * 2 * sides_k;
-                if (k < k1) corners += counts[2] * 2 * sides_j;
-            }
-        }
-        return corners;
-    };
+// Puts the triangles of each bar behind those of the one before, and returns how many there are.
+inline std::size_t place_bars(Bars& bars) {
     std::size_t next = 0;
-    for (std::size_t bar = 0; bar < bars.bars.size(); ++bar) {
-        Bar& here = bars.bars[bar];
-        if (here.stale) here.capacity = std::max(here.capacity, corners_in(bar) - 2 * count_highrices(here));
-        here.first_triangle = next;
-        next += here.capacity;
+    for (Bar& bar : bars.bars) {
+        bar.first_triangle = next;
+        next += bar.triangles;
     }
-    bars.triangles_at_most = next;
+    return next;
 }
 
 inline Facts sum_facts(const Bars& bars) {

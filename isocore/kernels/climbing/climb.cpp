@@ -4,20 +4,24 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "climbing/bars.hpp"
 #include "climbing/drawer.hpp"
+#include "climbing/in_order.hpp"
 #include "climbing/layout.hpp"
 #include "climbing/partition.hpp"
 #include "climbing/splitting.hpp"
 #include "climbing/spotter.hpp"
 #include "common/edge_vertices.hpp"
-#include "common/gaps.hpp"
 #include "common/parallel.hpp"
 #include "common/sample_types.hpp"
 #include "common/set_bits.hpp"
@@ -120,10 +124,14 @@ class Climb {
 
     // Draws the bars that are stale, which are all of them at first.
     void draw() {
-        bound_triangles(signs_, layout_, bars_);
-        mesh_.triangles.reserve(3 * (bars_.triangles_at_most + bars_.triangles_at_most / kLateShare));
-        mesh_.triangles.resize(3 * bars_.triangles_at_most);
-        draw_stale();
+        // A loop of n vertices gives n - 2 triangles, and a vertex lies on at most four boxes. Room that is not used is not
+        // touched.
+        std::size_t most = 4 * (mesh_.vertices.size() / 3);
+        for (const Bar& bar : bars_.bars) most -= 2 * count_highrices(bar);
+        mesh_.triangles.resize(3 * most);
+        InOrder triangles(bars_.bars.size(), mesh_.triangles);
+        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { triangles.put(n, part); });
+        mesh_.triangles.resize(3 * place_bars(bars_));
     }
 
     // Halves the boxes that break the bound. False if there are none.
@@ -134,15 +142,16 @@ class Climb {
 
         std::vector<std::size_t> before;
         for (const Bar& bar : bars_.bars) before.push_back(bar.first_triangle);
-        bound_triangles(signs_, layout_, bars_);
-        mesh_.triangles.resize(3 * bars_.triangles_at_most);
-        move_triangles(before, bars_, mesh_.triangles);
-        draw_stale();
+        Redrawn redrawn(bars_.bars.size());
+        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { redrawn[n].emplace(part.begin(), part.end()); });
+        const std::size_t size = 3 * place_bars(bars_);
+        mesh_.triangles.resize(std::max(mesh_.triangles.size(), size));
+        move_triangles(before, redrawn, bars_, mesh_.triangles);
+        mesh_.triangles.resize(size);
         return true;
     }
 
     Mesh<Coordinate> take() {
-        close_gaps(bars_.bars, mesh_.triangles);
         mesh_.facts = sum_facts(bars_);
         mesh_.facts.crossings = layout_.crossings();
         return std::move(mesh_);
@@ -162,7 +171,7 @@ class Climb {
         });
     }
 
-    // Room is left for so large a share of what late halvings may add: growing would need room twice.
+    // Room is left for so large a share of vertices that late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
     template <class Work>
@@ -170,12 +179,16 @@ class Climb {
         parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) { work(n, bars_.bars[n]); });
     }
 
-    void draw_stale() {
-        for_bars([&](std::size_t n, Bar& bar) {
-            if (!bar.stale) return;
-            Drawer<Sample, Coordinate> drawer(samples_, signs_, layout_, options_, mesh_.vertices.data());
-            std::int32_t* const first = mesh_.triangles.data() + 3 * bar.first_triangle;
-            bar.triangles = static_cast<std::size_t>(drawer.draw(bars_, n, bar, first) - first) / 3;
+    // Calls put(number, triangles) for each bar that is stale, from any thread.
+    template <class Put>
+    void draw_stale(const Put& put) {
+        std::atomic<std::size_t> next{0};
+        const auto drawers = static_cast<std::size_t>(std::max(options_.threads, 1));
+        parallel_for(options_.threads, drawers, [&](std::size_t) {
+            const auto drawer = std::make_unique<Drawer<Sample, Coordinate>>(samples_, signs_, layout_, options_, mesh_.vertices.data());
+            for (std::size_t n = next++; n < bars_.bars.size(); n = next++) {
+                if (Bar& bar = bars_.bars[n]; bar.stale) put(n, drawer->draw(bars_, n, bar));
+            }
         });
     }
 

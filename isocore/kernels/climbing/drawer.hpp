@@ -32,31 +32,43 @@ class Drawer {
           edges_(options.block_size),
           ruler_(samples, signs, options) {}
 
-    // Writes the triangles from `out` on and returns the end; boxes that break the bound are noted in bar.broken.
-    std::int32_t* draw(const Bars& bars, std::size_t number, Bar& bar, std::int32_t* out) {
+    // The triangles of a bar, until the next one is drawn; boxes that break the bound are noted in bar.broken.
+    std::span<const std::int32_t> draw(const Bars& bars, std::size_t number, Bar& bar) {
+        drawn_ = 0;
         bar.ambiguous_faces = bar.ambiguous_cells = 0;
         bar.in_voxels = bar.in_world = {};
         bar.broken.clear();
         bar.stale = false;
-        if (bar.blocks.empty()) return out;
+        if (bar.blocks.empty()) return {};
         site_.begin(signs_, layout_, bars.block_size * (number % bars.blocks[1]), bars.block_size * (number / bars.blocks[1]));
         bars.visit(number, [&](const Dims& origin, std::span<const HighRice> boxes, std::span<const CellRow> cell_rows) {
             site_.load(origin[0]);
             for (const HighRice& box : boxes) {
-                out = draw_disk(box, out);
+                draw_disk(box);
                 if (options_.measured) {
                     ruler_.add(site_.origin, box, static_cast<std::size_t>(&box - bar.boxes.data()), edges_.dropped(), polygon_, triangles_, bar);
                 }
             }
-            for (const CellRow& row : cell_rows) out = draw_cells(bar, row, out);
+            for (const CellRow& row : cell_rows) draw_cells(bar, row);
         });
         if (options_.measured) ruler_.take(bar);
-        return out;
+        bar.triangles = drawn_ / 3;
+        return {vertices_of_triangles_.data(), drawn_};
     }
 
   private:
-    std::int32_t* draw_cells(Bar& bar, const CellRow& cells, std::int32_t* out) {
+    static constexpr std::size_t kMostOfCell = cell_loops::Case{}.edges.size() / 3;  // triangles
+
+    // Where triangles can be written, so many at most. They count once drawn_ says so.
+    std::int32_t* room_for(std::size_t triangles) {
+        if (vertices_of_triangles_.size() < drawn_ + 3 * triangles) vertices_of_triangles_.resize(2 * (drawn_ + 3 * triangles));
+        return vertices_of_triangles_.data() + drawn_;
+    }
+
+    void draw_cells(Bar& bar, const CellRow& cells) {
         const int j = cells.j, k = cells.k;
+        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells.cells)));
+        std::int32_t* out = start;
         for (std::uint64_t left = cells.cells; left; left &= left - 1) {
             const int x = std::countr_zero(left);
             const auto pair = [&](int right, int up) { return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3); };
@@ -73,7 +85,7 @@ class Drawer {
             const auto& drawn = cell_loops::kTable.cases[entry.first + decisions];
             for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
         }
-        return out;
+        drawn_ += static_cast<std::size_t>(out - start);
     }
 
     // The vertices on a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
@@ -95,7 +107,7 @@ class Drawer {
         return out;
     }
 
-    std::int32_t* draw_disk(const HighRice& box, std::int32_t* out) {
+    void draw_disk(const HighRice& box) {
         edges_.find(site_, box);
         loop_.arrange(edges_.kept(), box, site_.corners(box));
         const auto kept = edges_.kept();
@@ -110,10 +122,11 @@ class Drawer {
             polygon_.set(loop_.place(n), from_there, loop_.faces(n), number);
         }
         triangles_ = polygon_.cut();
+        std::int32_t* out = room_for(triangles_.size());
+        drawn_ += 3 * triangles_.size();
         for (const Polygon::Triangle& triangle : triangles_) {
             for (const std::size_t corner : triangle) *out++ = polygon_.vertex(corner);
         }
-        return out;
     }
 
     const GridView<Sample>& samples_;
@@ -127,6 +140,8 @@ class Drawer {
     Polygon polygon_;
     std::span<const Polygon::Triangle> triangles_;  // of the box that was drawn last
     Ruler<Sample> ruler_;
+    Array<std::int32_t> vertices_of_triangles_;
+    std::size_t drawn_ = 0;  // of them
 };
 
 }  // namespace isocore::climbing

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -145,15 +146,25 @@ inline void renumber(const std::vector<LateVertex>& late, std::span<std::int32_t
     }
 }
 
-// Moves the triangles of all bars to where `bars` wants them now; `before` tells where they were, never further up.
-inline void move_triangles(const std::vector<std::size_t>& before, const Bars& bars, Array<std::int32_t>& triangles) {
-    for (std::size_t n = bars.bars.size(); n-- > 0;) {
+// What was drawn anew, by bar.
+using Redrawn = std::vector<std::optional<std::vector<std::int32_t>>>;
+
+// Moves the triangles of all bars from where they were `before` to where `bars` wants them now, and puts in what was redrawn.
+inline void move_triangles(const std::vector<std::size_t>& before, const Redrawn& redrawn, const Bars& bars, Array<std::int32_t>& triangles) {
+    const auto at = [&](std::size_t triangle) { return triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle); };
+    const std::size_t count = bars.bars.size();
+    for (std::size_t n = 0; n < count; ++n) {  // from the first on, so that nothing that is yet to move is overwritten
         const Bar& bar = bars.bars[n];
-        const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * before[n]);
-        const auto size = static_cast<std::ptrdiff_t>(3 * bar.triangles);
-        if (before[n] != bar.first_triangle) {
-            std::copy_backward(from, from + size, triangles.begin() + static_cast<std::ptrdiff_t>(3 * bar.first_triangle) + size);
+        if (!redrawn[n] && bar.first_triangle < before[n]) std::copy(at(before[n]), at(before[n] + bar.triangles), at(bar.first_triangle));
+    }
+    for (std::size_t n = count; n-- > 0;) {  // from the last on, for the same reason
+        const Bar& bar = bars.bars[n];
+        if (!redrawn[n] && bar.first_triangle > before[n]) {
+            std::copy_backward(at(before[n]), at(before[n] + bar.triangles), at(bar.first_triangle + bar.triangles));
         }
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        if (redrawn[n]) std::copy(redrawn[n]->begin(), redrawn[n]->end(), at(bars.bars[n].first_triangle));
     }
 }
 
