@@ -15,12 +15,16 @@ namespace isocore::climbing {
 // the plane. There its corners are (0, 0), (length, 0) and (u, v) with a positive v.
 class Facets {
   public:
+    using Numbers = Lanes<float>;
     static constexpr std::size_t kRoom = 1024;
 
     std::size_t size() const { return size_; }
     void clear() { size_ = 0; }
 
     void add(const Spot& a, const Spot& b, const Spot& c) {
+        if (size_ % kLanes<float> == 0) {
+            for (std::size_t n = 0; n < 9; ++n) Numbers(0.0f).store(numbers_[kCorners + n].data() + size_);
+        }
         const std::array<const Spot*, 3> corners{&a, &b, &c};
         for (std::size_t n = 0; n < 9; ++n) numbers_[kCorners + n][size_] = (*corners[n / 3])[n % 3];
         ++size_;
@@ -46,8 +50,6 @@ class Facets {
     }
 
   private:
-    using Numbers = Lanes<float>;
-
     // What is known of triangles: their corners; the axes u, v and h; the corners in that frame; and of the sides from
     // (length, 0) and from (0, 0) to (u, v), one by the squared length.
     static constexpr std::size_t kCorners = 0, kAxes = 9, kLength = 18, kU = 19, kV = 20, kRight = 21, kLeft = 22, kNumbers = 23;
@@ -111,7 +113,7 @@ class Facets {
     }
 
     std::size_t size_ = 0;
-    std::array<std::array<float, kRoom + kLanes<float>>, kNumbers> numbers_{};
+    std::array<std::array<float, kRoom + kLanes<float>>, kNumbers> numbers_;  // set as far as there are triangles
 };
 
 }  // namespace isocore::climbing

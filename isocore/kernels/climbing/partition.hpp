@@ -2,6 +2,7 @@
 // halved along the axis whose halves come off best. (The paper grows them bottom up, by plots and padis.)
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,17 +17,22 @@
 
 namespace isocore::climbing {
 
-// What the error bound needs to know of a block: where its crossings are.
+// What the error bound needs to know of a block: where its crossings are. All in units as long as the longest side of a
+// voxel, as the squares of very small numbers would be lost.
 class Judge {
   public:
-    Judge(double bound, const std::array<double, 3>& stretch)
-        : max_error(bound), scale{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])} {}
+    // stretch: the sides of a voxel in the unit of the bound.
+    Judge(double bound, const std::array<double, 3>& stretch) {
+        const double unit = *std::max_element(stretch.begin(), stretch.end());
+        max_error = bound / unit;
+        for (std::size_t a = 0; a < 3; ++a) scale[a] = static_cast<float>(stretch[a] / unit);
+    }
     virtual ~Judge() = default;
     // Adds all crossings of the closed block.
     virtual void gather(const Site& site, Clouds& clouds, Ligns& ligns) const = 0;
 
-    const double max_error;
-    const Spot scale;  // from samples to the unit of the bound
+    double max_error;
+    Spot scale;  // from samples to that unit
 };
 
 // The highrices of one cell in a row of a block, a bit for each.
