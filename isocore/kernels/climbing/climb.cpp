@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -183,7 +182,7 @@ class Climb {
     template <class Put>
     void draw_stale(const Put& put) {
         std::atomic<std::size_t> next{0};
-        const auto drawers = static_cast<std::size_t>(std::max(options_.threads, 1));
+        const auto drawers = std::min(static_cast<std::size_t>(std::max(options_.threads, 1)), bars_.bars.size());
         parallel_for(options_.threads, drawers, [&](std::size_t) {
             const auto drawer = std::make_unique<Drawer<Sample, Coordinate>>(samples_, signs_, layout_, options_, mesh_.vertices.data());
             for (std::size_t n = next++; n < bars_.bars.size(); n = next++) {

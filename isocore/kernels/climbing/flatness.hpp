@@ -59,7 +59,6 @@ class Flatness {
     // A slab this many times too thick is hardly ever saved by a better plane.
     static constexpr float kWorthFitting = 1.25f;
 
-
     static bool normalise(Spot& a) {
         const float length = std::sqrt(dot(a, a));
         if (!(length > 0)) return false;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "climbing/bar_shadow.hpp"
 #include "climbing/block.hpp"
 #include "climbing/cloud.hpp"
 #include "climbing/cuts.hpp"
