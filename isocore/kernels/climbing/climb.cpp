@@ -103,14 +103,14 @@ class Climb {
 
     void number_and_place_vertices() {
         const std::size_t rows = signs_.dims[1], planes = signs_.dims[2];
-        const std::size_t vertices = layout_.number(options_.threads);
+        const std::size_t vertices = layout_.number();
         mesh_.vertices.reserve(3 * (vertices + vertices / kLateShare));
         mesh_.vertices.resize(3 * vertices);
         parallel_for(options_.threads, planes, [&](std::size_t k) {
             for (std::size_t j = 0; j < rows; ++j) {
                 if (layout_.vertices_in(j, k) == 0) continue;
                 std::size_t crossing = layout_.first_crossing(j, k);
-                write_row_vertices(samples_, signs_, options_.isovalue, j, k, mesh_.vertices.data() + 3 * std::size_t{layout_.first_vertex(j, k)},
+                write_row_vertices(samples_, signs_, options_.isovalue, j, k, mesh_.vertices.data() + 3 * layout_.vertex(crossing),
                                    [&](auto axis, std::size_t w) {
                                        const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
                                        const std::size_t first = crossing;
@@ -158,8 +158,8 @@ class Climb {
 
   private:
     void insert_vertices(std::vector<LateVertex> late) {
-        layout_.number(options_.threads);
-        for (LateVertex& vertex : late) vertex.vertex = layout_.vertex(vertex.crossing, vertex.at[1], vertex.at[2]);
+        layout_.number();
+        for (LateVertex& vertex : late) vertex.vertex = layout_.vertex(vertex.crossing);
         make_room(late, mesh_.vertices);
         for (const LateVertex& vertex : late) {
             const auto& [i, j, k] = vertex.at;

@@ -32,7 +32,7 @@ class DrawnSite : public Site {
             const auto counts = count_crossings(signs, gj, gk);
             std::size_t crossing = layout.first_crossing(gj, gk);
             for (std::size_t axis = 0; axis < 3; crossing += counts[axis++]) {
-                next_vertices_[row_index(j, k)][axis] = static_cast<std::uint32_t>(layout.vertex(crossing, gj, gk));
+                next_vertices_[row_index(j, k)][axis] = static_cast<std::uint32_t>(layout.vertex(crossing));
             }
         });
     }

@@ -32,7 +32,7 @@ inline std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::
 
 class Layout {
   public:
-    Layout(const SignGrid& signs, int threads) : rows_(signs.dims[1]), first_crossing_(rows_ * signs.dims[2] + 1), first_vertex_(first_crossing_.size()) {
+    Layout(const SignGrid& signs, int threads) : rows_(signs.dims[1]), first_crossing_(rows_ * signs.dims[2] + 1) {
         parallel_for(threads, signs.dims[2], [&](std::size_t k) {
             for (std::size_t j = 0; j < rows_; ++j) {
                 const auto counts = count_crossings(signs, j, k);
@@ -40,13 +40,13 @@ class Layout {
             }
         });
         crossings_ = add_up(first_crossing_, std::numeric_limits<std::uint32_t>::max());
-        kept_ = std::vector<std::atomic<std::uint64_t>>(crossings_ / 64 + 2);
+        kept_ = std::vector<std::atomic<std::uint64_t>>(kGroup / 64 * (crossings_ / kGroup + 1) + 1);
+        vertices_before_.resize(crossings_ / kGroup + 2);
     }
 
     std::size_t crossings() const { return crossings_; }
     std::uint32_t first_crossing(std::size_t j, std::size_t k) const { return first_crossing_[row(j, k)]; }
-    std::uint32_t first_vertex(std::size_t j, std::size_t k) const { return first_vertex_[row(j, k)]; }
-    std::size_t vertices_in(std::size_t j, std::size_t k) const { return first_vertex_[row(j, k) + 1] - first_vertex(j, k); }
+    std::size_t vertices_in(std::size_t j, std::size_t k) const { return count(first_crossing(j, k), first_crossing_[row(j, k) + 1]); }
 
     // Keeps a crossing, from any thread. False if it was kept before.
     bool keep(std::size_t crossing) {
@@ -80,17 +80,13 @@ class Layout {
     }
 
     // Numbers the vertices anew; returns how many there are.
-    std::size_t number(int threads) {
-        parallel_for(threads, (first_vertex_.size() - 1) / rows_, [&](std::size_t k) {
-            for (std::size_t n = rows_ * k; n < rows_ * (k + 1); ++n) first_vertex_[n] = count(first_crossing_[n], first_crossing_[n + 1]);
-        });
-        return add_up(first_vertex_, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
+    std::size_t number() {
+        for (std::size_t n = 0; n + 1 < vertices_before_.size(); ++n) vertices_before_[n] = count(kGroup * n, kGroup * (n + 1));
+        return add_up(vertices_before_, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
     }
 
-    // The vertex that a kept crossing of row (j, k) is.
-    std::size_t vertex(std::size_t crossing, std::size_t j, std::size_t k) const {
-        return first_vertex(j, k) + count(first_crossing(j, k), crossing);
-    }
+    // The vertex that a crossing is, or the next one that is kept.
+    std::size_t vertex(std::size_t crossing) const { return vertices_before_[crossing / kGroup] + count(crossing / kGroup * kGroup, crossing); }
 
   private:
     void add(std::size_t word, std::uint64_t bits) {
@@ -112,9 +108,12 @@ class Layout {
         return sum;
     }
 
+    static constexpr std::size_t kGroup = 512;  // crossings
+
     std::size_t rows_, crossings_ = 0;
-    Array<std::uint32_t> first_crossing_, first_vertex_;  // by row, and one more
-    std::vector<std::atomic<std::uint64_t>> kept_;        // a bit per crossing
+    Array<std::uint32_t> first_crossing_;            // by row, and one more
+    std::vector<std::atomic<std::uint64_t>> kept_;   // a bit per crossing
+    Array<std::uint32_t> vertices_before_;           // those before each group of crossings, and one more
 };
 
 }  // namespace isocore::climbing
