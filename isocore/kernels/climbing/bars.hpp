@@ -35,7 +35,7 @@ struct Bars {
     template <class Visit>
     void visit(std::size_t number, const Visit& visit) const {
         const Bar& bar = bars[number];
-        std::span<const HighRice> boxes = bar.boxes;
+        std::span<const StoredRice> boxes = bar.boxes;
         std::span<const CellRow> cell_rows = bar.cell_rows;
         for (const VisitedBlock block : bar.blocks) {
             visit(Dims{block.x, block_size * (number % blocks[1]), block_size * (number / blocks[1])}, boxes.first(block.boxes),
@@ -48,7 +48,7 @@ struct Bars {
 
 inline std::size_t count_highrices(const Bar& bar) {
     std::size_t count = bar.boxes.size();
-    for (const CellRow& row : bar.cell_rows) count += static_cast<std::size_t>(std::popcount(row.cells));
+    for (const CellRow& row : bar.cell_rows) count += static_cast<std::size_t>(std::popcount(row.cells()));
     return count;
 }
 

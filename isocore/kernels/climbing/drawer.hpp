@@ -41,12 +41,13 @@ class Drawer {
         bar.stale = false;
         if (bar.blocks.empty()) return {};
         site_.begin(signs_, layout_, bars.block_size * (number % bars.blocks[1]), bars.block_size * (number / bars.blocks[1]));
-        bars.visit(number, [&](const Dims& origin, std::span<const HighRice> boxes, std::span<const CellRow> cell_rows) {
+        bars.visit(number, [&](const Dims& origin, std::span<const StoredRice> boxes, std::span<const CellRow> cell_rows) {
             site_.load(origin[0]);
-            for (const HighRice& box : boxes) {
+            for (const StoredRice& stored : boxes) {
+                const HighRice box = stored.box();
                 draw_disk(box);
                 if (options_.measured) {
-                    ruler_.add(site_.origin, box, static_cast<std::size_t>(&box - bar.boxes.data()), edges_.dropped(), polygon_, triangles_, bar);
+                    ruler_.add(site_.origin, box, static_cast<std::size_t>(&stored - bar.boxes.data()), edges_.dropped(), polygon_, triangles_, bar);
                 }
             }
             for (const CellRow& row : cell_rows) draw_cells(bar, row);
@@ -66,17 +67,17 @@ class Drawer {
     }
 
     void draw_cells(Bar& bar, const CellRow& cells) {
-        const int j = cells.j, k = cells.k;
-        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells.cells)));
+        const int j = cells.j(), k = cells.k();
+        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells.cells())));
         std::int32_t* out = start;
-        for (std::uint64_t left = cells.cells; left; left &= left - 1) {
+        for (std::uint64_t left = cells.cells(); left; left &= left - 1) {
             const int x = std::countr_zero(left);
             const auto pair = [&](int right, int up) { return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3); };
             const unsigned corners = pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
             const auto& entry = cell_loops::kTable.corners[corners];
             unsigned decisions = 0;
             if (entry.ambiguous) {
-                const Dims cell{site_.origin[0] + static_cast<std::size_t>(x), site_.origin[1] + cells.j, site_.origin[2] + cells.k};
+                const Dims cell{site_.origin[0] + static_cast<std::size_t>(x), site_.origin[1] + static_cast<std::size_t>(j), site_.origin[2] + static_cast<std::size_t>(k)};
                 decisions = decide_faces(samples_, signs_.pad, options_.isovalue, corners, cell);
                 ++bar.ambiguous_cells;
                 bar.ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));

@@ -41,11 +41,13 @@ class Partition {
         const std::size_t boxes = bar.boxes.size(), rows = bar.cell_rows.size();
         const Box whole{1, 1, 1};
         settle(whole, price(whole, crossings_), crossings_, bar.boxes);
-        for (std::size_t n = boxes; n < bar.boxes.size(); ++n) cuts_.add(bar.boxes[n]);
+        for (std::size_t n = boxes; n < bar.boxes.size(); ++n) cuts_.add(bar.boxes[n].box());
         for (int n = 0; n < N * N; ++n) {
             const std::uint32_t cells = cells_[static_cast<std::size_t>(n)];
             if (cells == 0) continue;
-            bar.cell_rows.push_back({static_cast<std::uint8_t>(n % N), static_cast<std::uint8_t>(n / N), cells});
+            for (int half = 0; half < (N + CellRow::kHalf - 1) / CellRow::kHalf; ++half) {
+                if (const unsigned there = cells >> CellRow::kHalf * half & 0xffff) bar.cell_rows.emplace_back(n % N, n / N, half, there);
+            }
             cuts_.add_cells(n % N, n / N, cells);
         }
         cuts_.keep(site_, layout_);
@@ -131,16 +133,16 @@ class Partition {
         return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) * judge_->scale[side.axis];
     }
 
-    void settle(const Box& box, int found, const Cloud& around, std::vector<HighRice>& boxes) {
+    void settle(const Box& box, int found, const Cloud& around, std::vector<StoredRice>& boxes) {
         if (found == kSplit) {
             split(box, around, boxes);
         } else if (found == kAccepted) {
             if (is_cell(box)) cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
-            else boxes.push_back(high_rice(box));
+            else boxes.emplace_back(high_rice(box));
         }
     }
 
-    void split(const Box& box, const Cloud& around, std::vector<HighRice>& boxes) {
+    void split(const Box& box, const Cloud& around, std::vector<StoredRice>& boxes) {
         const std::size_t top = clouds_.top();
         const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(high_rice(box))) : around;
         const Choice choice = best_axis(box, here);

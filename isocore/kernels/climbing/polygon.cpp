@@ -39,8 +39,9 @@ void for_constants(const Visit& visit) {
 }  // namespace
 
 void Polygon::make_room(std::size_t size) {
-    corners_.resize(2 * size);
-    stride_ = 2 * size + kLanes<float>;
+    const std::size_t room = size + size / 4;  // its square is what counts
+    corners_.resize(room);
+    stride_ = room + kLanes<float>;
     for (auto& axis : places_) axis.assign(stride_, 0);
     cost_.assign(stride_ * stride_, 0);
     apex_.resize(stride_ * stride_);

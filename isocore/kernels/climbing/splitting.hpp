@@ -50,25 +50,26 @@ inline void halve(const SignGrid& signs, const Dims& origin, const HighRice& box
 }
 
 inline void split_bar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late) {
-    std::vector<HighRice> boxes;
+    std::vector<StoredRice> boxes;
     std::vector<CellRow> cell_rows;
     auto broken = bar.broken.begin();
     std::size_t block = 0, box = 0;
-    bars.visit(number, [&](const Dims& origin, std::span<const HighRice> old_boxes, std::span<const CellRow> old_rows) {
+    bars.visit(number, [&](const Dims& origin, std::span<const StoredRice> old_boxes, std::span<const CellRow> old_rows) {
         const std::size_t boxes_before = boxes.size(), rows_before = cell_rows.size();
         cell_rows.insert(cell_rows.end(), old_rows.begin(), old_rows.end());
-        for (const HighRice& old : old_boxes) {
+        for (const StoredRice& old : old_boxes) {
             if (broken == bar.broken.end() || *broken != box++) {
                 boxes.push_back(old);
                 continue;
             }
             ++broken;
             std::vector<HighRice> parts;
-            halve(signs, origin, old, parts);
+            halve(signs, origin, old.box(), parts);
             for (const HighRice& part : parts) {
                 late.push_back({origin, part});
-                if (part.is_cell()) cell_rows.push_back({part.low[1], part.low[2], std::uint32_t{1} << part.low[0]});
-                else boxes.push_back(part);
+                const auto [i, j, k] = part.low;
+                if (part.is_cell()) cell_rows.emplace_back(j, k, i / CellRow::kHalf, 1u << i % CellRow::kHalf);
+                else boxes.emplace_back(part);
             }
         }
         bar.blocks[block].boxes = static_cast<std::uint32_t>(boxes.size() - boxes_before);
