@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "climbing/bars.hpp"
@@ -95,10 +95,8 @@ class Climb {
     void partition() {
         const Gatherer<Sample> gatherer(samples_, signs_, options_);
         const bool bounded = std::isfinite(options_.max_error);
-        for_bars([&](std::size_t n, Bar& bar) {
-            static_cast<BarBoxes&>(bar) = partition_bar(signs_, options_.block_size, n % bars_.blocks[1], n / bars_.blocks[1],
-                                                        bounded ? &gatherer : nullptr, layout_);
-        });
+        auto boxes = partition_bars(signs_, options_.block_size, options_.threads, bounded ? &gatherer : nullptr, layout_);
+        for (std::size_t n = 0; n < boxes.size(); ++n) static_cast<BarBoxes&>(bars_.bars[n]) = std::move(boxes[n]);
     }
 
     void number_and_place_vertices() {
@@ -165,7 +163,8 @@ class Climb {
             const auto& [i, j, k] = vertex.at;
             write_vertex(samples_, signs_, options_.isovalue, vertex.axis, i, j, k, mesh_.vertices.data() + 3 * vertex.vertex);
         }
-        for_bars([&](std::size_t, Bar& bar) {
+        parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) {
+            const Bar& bar = bars_.bars[n];
             if (!bar.stale) renumber(late, {mesh_.triangles.data() + 3 * bar.first_triangle, 3 * bar.triangles});
         });
     }
@@ -173,21 +172,13 @@ class Climb {
     // Room is left for so large a share of vertices that late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
-    template <class Work>
-    void for_bars(const Work& work) {
-        parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) { work(n, bars_.bars[n]); });
-    }
-
     // Calls put(number, triangles) for each bar that is stale, from any thread.
     template <class Put>
     void draw_stale(const Put& put) {
-        std::atomic<std::size_t> next{0};
-        const auto drawers = std::min(static_cast<std::size_t>(std::max(options_.threads, 1)), bars_.bars.size());
-        parallel_for(options_.threads, drawers, [&](std::size_t) {
-            const auto drawer = std::make_unique<Drawer<Sample, Coordinate>>(samples_, signs_, layout_, options_, mesh_.vertices.data());
-            for (std::size_t n = next++; n < bars_.bars.size(); n = next++) {
-                if (Bar& bar = bars_.bars[n]; bar.stale) put(n, drawer->draw(bars_, n, bar));
-            }
+        using AnyDrawer = Drawer<Sample, Coordinate>;
+        const auto make = [&] { return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data()); };
+        parallel_for(options_.threads, bars_.bars.size(), make, [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
+            if (Bar& bar = bars_.bars[n]; bar.stale) put(n, drawer->draw(bars_, n, bar));
         });
     }
 

@@ -16,6 +16,7 @@
 #include "climbing/ligns.hpp"
 #include "climbing/rim.hpp"
 #include "climbing/survey.hpp"
+#include "common/parallel.hpp"
 
 namespace isocore::climbing {
 namespace {
@@ -240,28 +241,33 @@ class Partition {
 };
 
 template <int N>
-BarBoxes partition_bar(const SignGrid& signs, std::size_t y, std::size_t z, const Judge* judge, Layout& layout) {
-    const auto partition = std::make_unique<Partition<N>>(signs, layout, judge);
-    const BarShadow shadow(signs, N, N * y, N * z);
-    BarBoxes out;
-    for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) {
-        if (shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x))) partition->climb({x, N * y, N * z}, out);
-    }
-    out.boxes.shrink_to_fit();
-    out.cell_rows.shrink_to_fit();
-    return out;
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const Judge* judge, Layout& layout) {
+    const auto blocks = [&](std::size_t axis) { return (signs.dims[axis] - 2) / N + 1; };
+    std::vector<BarBoxes> bars(blocks(1) * blocks(2));
+    const auto make = [&] { return std::make_unique<Partition<N>>(signs, layout, judge); };
+    parallel_for(threads, bars.size(), make, [&](const std::unique_ptr<Partition<N>>& partition, std::size_t n) {
+        const std::size_t y = N * (n % blocks(1)), z = N * (n / blocks(1));
+        const BarShadow shadow(signs, N, y, z);
+        BarBoxes& bar = bars[n];
+        for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) {
+            if (shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x))) partition->climb({x, y, z}, bar);
+        }
+        bar.boxes.shrink_to_fit();
+        bar.cell_rows.shrink_to_fit();
+    });
+    return bars;
 }
 
 }  // namespace
 
-BarBoxes partition_bar(const SignGrid& signs, int block_size, std::size_t y, std::size_t z, const Judge* judge, Layout& layout) {
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge, Layout& layout) {
     switch (block_size) {
-        case 1: return partition_bar<1>(signs, y, z, judge, layout);
-        case 2: return partition_bar<2>(signs, y, z, judge, layout);
-        case 4: return partition_bar<4>(signs, y, z, judge, layout);
-        case 8: return partition_bar<8>(signs, y, z, judge, layout);
-        case 16: return partition_bar<16>(signs, y, z, judge, layout);
-        default: return partition_bar<32>(signs, y, z, judge, layout);
+        case 1: return partition_bars<1>(signs, threads, judge, layout);
+        case 2: return partition_bars<2>(signs, threads, judge, layout);
+        case 4: return partition_bars<4>(signs, threads, judge, layout);
+        case 8: return partition_bars<8>(signs, threads, judge, layout);
+        case 16: return partition_bars<16>(signs, threads, judge, layout);
+        default: return partition_bars<32>(signs, threads, judge, layout);
     }
 }
 

@@ -63,8 +63,8 @@ struct BarBoxes {
     std::vector<CellRow> cell_rows;
 };
 
-// Finds the highrices of the bar (y, z) and keeps the crossings on their edges. Without a judge every box is flat. The
+// Finds the highrices of all bars, [z][y], and keeps the crossings on their edges. Without a judge every box is flat. The
 // block size is 1, 2, 4, 8, 16 or 32.
-BarBoxes partition_bar(const SignGrid& signs, int block_size, std::size_t y, std::size_t z, const Judge* judge, Layout& layout);
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge, Layout& layout);
 
 }  // namespace isocore::climbing

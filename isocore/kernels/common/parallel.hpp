@@ -40,4 +40,14 @@ void parallel_for(int threads, std::size_t count, const Task& task) {
     if (failure) std::rethrow_exception(failure);
 }
 
+// Runs task(helper, 0) ... task(helper, count - 1), where each thread makes itself a helper first.
+template <class Make, class Task>
+void parallel_for(int threads, std::size_t count, const Make& make, const Task& task) {
+    std::atomic<std::size_t> next{0};
+    parallel_for(threads, std::min(count, static_cast<std::size_t>(std::max(threads, 1))), [&](std::size_t) {
+        auto helper = make();
+        for (std::size_t i = next++; i < count; i = next++) task(helper, i);
+    });
+}
+
 }  // namespace isocore
