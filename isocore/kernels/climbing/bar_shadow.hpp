@@ -29,11 +29,7 @@ class BarShadow {
     // Does a block from sample x on hold any crossing, if it has so many cells along the bar?
     bool crosses(std::size_t x, std::size_t cells) const {
         const std::uint64_t samples = (std::uint64_t{2} << cells) - 1;
-        const auto part = [&](const std::vector<std::uint64_t>& words) {
-            const std::size_t w = x / 64, shift = x % 64;
-            return (words[w] >> shift | words[w + 1] << 1 << (63 - shift)) & samples;
-        };
-        return part(any_) != 0 && part(all_) != samples;
+        return (samples_from(any_.data(), x) & samples) != 0 && (samples_from(all_.data(), x) & samples) != samples;
     }
 
   private:

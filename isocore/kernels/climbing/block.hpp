@@ -20,14 +20,12 @@ class Block {
     // Reads the block that starts at sample `origin`.
     void load(const SignGrid& signs, const Dims& origin) {
         for (std::size_t a = 0; a < 3; ++a) cells[a] = static_cast<int>(std::min<std::size_t>(N, signs.dims[a] - 1 - origin[a]));
-        const std::size_t w = origin[0] / 64, shift = origin[0] % 64;
-        const bool two_words = shift + static_cast<std::size_t>(cells[0]) >= 64;
         const Word kept = static_cast<Word>((std::uint64_t{2} << cells[0]) - 1), beyond = DikeBits<N>::kSamples & ~kept;
         for (int k = 0; k <= N; ++k) {
             for (int j = 0; j <= N; ++j) {
                 const std::uint64_t* row = signs.row(origin[1] + static_cast<std::size_t>(std::min(j, cells[1])),
                                                      origin[2] + static_cast<std::size_t>(std::min(k, cells[2])));
-                Word bits = static_cast<Word>(row[w] >> shift | (two_words ? row[w + 1] << 1 << (63 - shift) : 0)) & kept;
+                Word bits = static_cast<Word>(samples_from(row, origin[0])) & kept;
                 if (bits >> cells[0] & 1) bits |= beyond;
                 rows[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] = bits;
             }

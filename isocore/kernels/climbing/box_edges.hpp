@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,7 +18,7 @@ namespace isocore::climbing {
 class Edge {
   public:
     Edge() = default;
-    static constexpr Edge from(unsigned axis, unsigned i, unsigned j, unsigned k) { return Edge(i | j << 8 | k << 16 | axis << 24); }
+    static constexpr Edge along_x(unsigned i, unsigned j, unsigned k) { return Edge(i | j << 8 | k << 16); }
     Edge further_along_x(int steps) const { return Edge(word_ + static_cast<std::uint32_t>(steps)); }
     Edge of_axis(int axis) const { return Edge(word_ | static_cast<std::uint32_t>(axis) << 24); }
 
@@ -96,7 +95,7 @@ class BoxEdges {
                 const DrawnSite::Cut& cut = site.cut(j, k);
                 const Half here = cut.kept_halves[half] & kept_here[j == y1];
                 add(here | (cut.dropped_halves[half] & dropped_here[j == y1]),
-                    {here, Edge::from(0, static_cast<unsigned>(origin), static_cast<unsigned>(j), static_cast<unsigned>(k))});
+                    {here, Edge::along_x(static_cast<unsigned>(origin), static_cast<unsigned>(j), static_cast<unsigned>(k))});
             }
         }
     }

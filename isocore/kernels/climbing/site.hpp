@@ -46,13 +46,10 @@ class Site {
     void load(std::size_t x) {
         origin[0] = x;
         set_size(0);
-        const std::size_t w = x / 64, shift = x % 64;
-        const bool two_words = shift + static_cast<std::size_t>(cells[0]) >= 64;
         const std::uint64_t samples = (std::uint64_t{2} << cells[0]) - 1;
         for_rows([&](int j, int k) {
             const auto [gj, gk] = in_grid(j, k);
-            const std::uint64_t* signs = signs_->row(gj, gk);
-            rows_[row_index(j, k)].signs = (signs[w] >> shift | (two_words ? signs[w + 1] << 1 << (63 - shift) : 0)) & samples;
+            rows_[row_index(j, k)].signs = samples_from(signs_->row(gj, gk), x) & samples;
         });
         for_rows([&](int j, int k) { find_crossings(j, k, samples); });
     }

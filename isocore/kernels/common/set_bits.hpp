@@ -40,8 +40,6 @@ class SetBits {
 
     void add(std::uint64_t bits, const Tag& tag) { Adder(*this)(bits, tag); }
     bool full() const { return end_ == words_.data() + kRoom; }
-    bool empty() const { return end_ == words_.data(); }
-    void clear() { end_ = words_.data(); }
 
     // Calls visit(tag, bit) for each of them and forgets them.
     template <class Visit>

@@ -34,6 +34,11 @@ struct SignGrid {
 template <class Sample>
 SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges = nullptr);
 
+// The row's samples from i on, as far as a word goes. What is beyond the row's last sample tells nothing.
+inline std::uint64_t samples_from(const std::uint64_t* row, std::size_t i) {
+    return row[i / 64] >> i % 64 | row[i / 64 + 1] << 1 << (63 - i % 64);
+}
+
 // The row moved by one sample towards 0, so that bit i tells of sample i + 1. What is beyond the row's last sample tells
 // nothing.
 inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w) { return row[w] >> 1 | row[w + 1] << 63; }
