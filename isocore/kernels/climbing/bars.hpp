@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct Bar : BarBoxes {
     std::size_t first_triangle = 0, triangles = 0;  // of the triangle array
     std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
     std::size_t split_again = 0;
-    std::vector<std::size_t> broken;  // boxes that break the error bound
+    std::vector<std::size_t> broken;  // boxes of several cells that break the error bound, by their order
     bool stale = true;                // boxes here or next to it have changed since it was measured
     Deviation in_voxels, in_world;
 };
@@ -31,26 +30,9 @@ struct Bars {
     std::size_t block_size;
     std::vector<Bar> bars;  // [z][y]
 
-    // Calls visit(origin, boxes, rows of single cells) for every visited block of a bar.
-    template <class Visit>
-    void visit(std::size_t number, const Visit& visit) const {
-        const Bar& bar = bars[number];
-        std::span<const StoredRice> boxes = bar.boxes;
-        std::span<const CellRow> cell_rows = bar.cell_rows;
-        for (const VisitedBlock block : bar.blocks) {
-            visit(Dims{block.x, block_size * (number % blocks[1]), block_size * (number / blocks[1])}, boxes.first(block.boxes),
-                  cell_rows.first(block.cell_rows));
-            boxes = boxes.subspan(block.boxes);
-            cell_rows = cell_rows.subspan(block.cell_rows);
-        }
-    }
+    // Where a bar starts.
+    Dims origin(std::size_t number) const { return {0, block_size * (number % blocks[1]), block_size * (number / blocks[1])}; }
 };
-
-inline std::size_t count_highrices(const Bar& bar) {
-    std::size_t count = bar.boxes.size();
-    for (const CellRow& row : bar.cell_rows) count += static_cast<std::size_t>(std::popcount(row.cells()));
-    return count;
-}
 
 inline Bars lay_out_bars(const SignGrid& signs, int block_size) {
     if (block_size < 1 || block_size > 32 || !std::has_single_bit(static_cast<unsigned>(block_size))) {
@@ -77,8 +59,8 @@ inline Facts sum_facts(const Bars& bars) {
     Facts facts;
     facts.blocks = bars.blocks[0] * bars.blocks[1] * bars.blocks[2];
     for (const Bar& bar : bars.bars) {
-        facts.highrices += count_highrices(bar);
-        facts.blocks_visited += bar.blocks.size();
+        facts.highrices += bar.highrices;
+        facts.blocks_visited += bar.blocks;
         facts.ambiguous_faces += bar.ambiguous_faces;
         facts.ambiguous_cells += bar.ambiguous_cells;
         facts.split_again += bar.split_again;

@@ -124,7 +124,7 @@ class Climb {
         // A loop of n vertices gives n - 2 triangles, and a vertex lies on at most four boxes. Room that is not used is not
         // touched.
         std::size_t most = 4 * (mesh_.vertices.size() / 3);
-        for (const Bar& bar : bars_.bars) most -= 2 * count_highrices(bar);
+        for (const Bar& bar : bars_.bars) most -= 2 * bar.highrices;
         mesh_.triangles.resize(3 * most);
         InOrder triangles(bars_.bars.size(), mesh_.triangles);
         draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { triangles.put(n, part); });

@@ -5,15 +5,17 @@
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "climbing/bars.hpp"
+#include "climbing/block_rices.hpp"
 #include "climbing/box_edges.hpp"
 #include "climbing/climb.hpp"
 #include "climbing/drawn_site.hpp"
 #include "climbing/edge_loop.hpp"
+#include "climbing/halvings.hpp"
 #include "climbing/polygon.hpp"
 #include "climbing/ruler.hpp"
+#include "common/array.hpp"
 #include "common/decider.hpp"
 
 namespace isocore::climbing {
@@ -29,6 +31,7 @@ class Drawer {
           options_(options),
           vertices_(vertices),
           site_(options.block_size),
+          rices_(options.block_size),
           edges_(options.block_size),
           ruler_(samples, signs, options) {}
 
@@ -39,19 +42,23 @@ class Drawer {
         bar.in_voxels = bar.in_world = {};
         bar.broken.clear();
         bar.stale = false;
-        if (bar.blocks.empty()) return {};
-        site_.begin(signs_, layout_, bars.block_size * (number % bars.blocks[1]), bars.block_size * (number / bars.blocks[1]));
-        bars.visit(number, [&](const Dims& origin, std::span<const StoredRice> boxes, std::span<const CellRow> cell_rows) {
-            site_.load(origin[0]);
-            for (const StoredRice& stored : boxes) {
-                const HighRice box = stored.box();
+        if (bar.blocks == 0) return {};
+        const auto [start, y, z] = bars.origin(number);
+        site_.begin(signs_, layout_, y, z);
+        HalvingsReader halvings(bar.halvings);
+        std::size_t boxes = 0;
+        for (std::size_t x = start; x + 1 < signs_.dims[0]; x += bars.block_size) {
+            const Fate fate = halvings.next_block();
+            if (fate == Fate::nothing) continue;
+            site_.load(x);
+            rices_.read(fate, halvings);
+            for (const Piece& piece : rices_.boxes()) {
+                const HighRice box = piece.within(site_.cells);
                 draw_disk(box);
-                if (options_.measured) {
-                    ruler_.add(site_.origin, box, static_cast<std::size_t>(&stored - bar.boxes.data()), edges_.dropped(), polygon_, triangles_, bar);
-                }
+                if (options_.measured) ruler_.add(site_.origin, box, boxes++, edges_.dropped(), polygon_, triangles_, bar);
             }
-            for (const CellRow& row : cell_rows) draw_cells(bar, row);
-        });
+            rices_.visit_cells(site_, [&](int j, int k, std::uint64_t cells) { draw_cells(bar, j, k, cells); });
+        }
         if (options_.measured) ruler_.take(bar);
         bar.triangles = drawn_ / 3;
         return {vertices_of_triangles_.data(), drawn_};
@@ -66,11 +73,11 @@ class Drawer {
         return vertices_of_triangles_.data() + drawn_;
     }
 
-    void draw_cells(Bar& bar, const CellRow& cells) {
-        const int j = cells.j(), k = cells.k();
-        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells.cells())));
+    // Of a row, a bit each.
+    void draw_cells(Bar& bar, int j, int k, std::uint64_t cells) {
+        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
         std::int32_t* out = start;
-        for (std::uint64_t left = cells.cells(); left; left &= left - 1) {
+        for (std::uint64_t left = cells; left; left &= left - 1) {
             const int x = std::countr_zero(left);
             const auto pair = [&](int right, int up) { return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3); };
             const unsigned corners = pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
@@ -136,6 +143,7 @@ class Drawer {
     const Options& options_;
     const Coordinate* vertices_;
     DrawnSite site_;
+    BlockRices rices_;
     BoxEdges edges_;
     EdgeLoop loop_;
     Polygon polygon_;

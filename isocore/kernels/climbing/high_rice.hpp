@@ -16,28 +16,7 @@ struct HighRice {
     std::array<std::uint8_t, 3> low, high;
 
     int length(std::size_t axis) const { return high[axis] - low[axis]; }
-    bool is_cell() const { return length(0) == 1 && length(1) == 1 && length(2) == 1; }
-};
-
-// The same in four bytes, as many are stored: five bits for each low end and for each length but one.
-class StoredRice {
-  public:
-    explicit StoredRice(const HighRice& box) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            bits_ |= static_cast<std::uint32_t>(box.low[a]) << 5 * a | static_cast<std::uint32_t>(box.length(a) - 1) << (15 + 5 * a);
-        }
-    }
-    HighRice box() const {
-        HighRice out;
-        for (std::size_t a = 0; a < 3; ++a) {
-            out.low[a] = static_cast<std::uint8_t>(bits_ >> 5 * a & 31);
-            out.high[a] = static_cast<std::uint8_t>(out.low[a] + (bits_ >> (15 + 5 * a) & 31) + 1);
-        }
-        return out;
-    }
-
-  private:
-    std::uint32_t bits_ = 0;
+    bool operator==(const HighRice&) const = default;
 };
 
 // What a simple box holds, by its eight corner signs (corner numbers as in cube.hpp).

@@ -27,33 +27,32 @@ class Partition {
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
         : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
 
-    // Adds a block to its bar. A bar's blocks come in their order; only those whose samples lie on one side may be left out.
+    // Adds a block to its bar. A bar's blocks come in their order; those whose samples lie on one side are left out.
     void climb(const Dims& origin, BarBoxes& bar) {
         block_.load(signs_, origin);
         survey_.take(block_, !judge_);
-        if (bar.blocks.empty()) site_.begin(signs_, layout_, origin[1], origin[2]);
+        if (bar.blocks++ == 0) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
         cuts_.clear();
+        boxes_.clear();
         cells_ = {};
         if (judge_) {
             for (auto* table : {&asked_, &passed_}) *table = {};
             gather();
         }
-        const std::size_t boxes = bar.boxes.size(), rows = bar.cell_rows.size();
         const Box whole{1, 1, 1};
-        settle(whole, price(whole, crossings_), crossings_, bar.boxes);
-        for (std::size_t n = boxes; n < bar.boxes.size(); ++n) cuts_.add(bar.boxes[n].box());
+        const int found = price(whole, crossings_);
+        bar.halvings.add_block(fate(found));
+        settle(whole, found, crossings_, bar.halvings);
+        for (const HighRice& box : boxes_) cuts_.add(box);
+        bar.highrices += boxes_.size();
         for (int n = 0; n < N * N; ++n) {
             const std::uint32_t cells = cells_[static_cast<std::size_t>(n)];
             if (cells == 0) continue;
-            for (int half = 0; half < (N + CellRow::kHalf - 1) / CellRow::kHalf; ++half) {
-                if (const unsigned there = cells >> CellRow::kHalf * half & 0xffff) bar.cell_rows.emplace_back(n % N, n / N, half, there);
-            }
             cuts_.add_cells(n % N, n / N, cells);
+            bar.highrices += static_cast<std::size_t>(std::popcount(cells));
         }
         cuts_.keep(site_, layout_);
-        bar.blocks.push_back({static_cast<std::uint32_t>(origin[0]), static_cast<std::uint32_t>(bar.boxes.size() - boxes),
-                              static_cast<std::uint32_t>(bar.cell_rows.size() - rows)});
     }
 
   private:
@@ -134,25 +133,32 @@ class Partition {
         return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) * judge_->scale[side.axis];
     }
 
-    void settle(const Box& box, int found, const Cloud& around, std::vector<StoredRice>& boxes) {
+    void settle(const Box& box, int found, const Cloud& around, Halvings& halvings) {
         if (found == kSplit) {
-            split(box, around, boxes);
+            split(box, around, halvings);
         } else if (found == kAccepted) {
             if (is_cell(box)) cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
-            else boxes.emplace_back(high_rice(box));
+            else boxes_.push_back(high_rice(box));
         }
     }
 
-    void split(const Box& box, const Cloud& around, std::vector<StoredRice>& boxes) {
+    void split(const Box& box, const Cloud& around, Halvings& halvings) {
         const std::size_t top = clouds_.top();
         const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(high_rice(box))) : around;
         const Choice choice = best_axis(box, here);
         const auto parts = halves(box, choice.axis);
-        for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.found[n], here, boxes);
+        if (!is_cell(parts[0])) halvings.add(axes(box), {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
+        for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.found[n], here, halvings);
         clouds_.pop(top);
     }
 
+    static Fate fate(int found) { return found == kSplit ? Fate::halved : found == kAccepted ? Fate::highrice : Fate::nothing; }
     static bool is_cell(const Box& box) { return Dikes::is_unit(std::min({box[0], box[1], box[2]})); }
+    // Those along which a box can be halved, a bit each.
+    static unsigned axes(const Box& box) {
+        const auto bit = [&](unsigned axis) { return unsigned{!Dikes::is_unit(box[axis])} << axis; };
+        return bit(0) | bit(1) | bit(2);
+    }
     static std::array<Box, 2> halves(const Box& box, std::size_t axis) {
         std::array<Box, 2> out{box, box};
         out[0][axis] = 2 * box[axis];
@@ -233,7 +239,8 @@ class Partition {
     Survey<N> survey_;
     Site site_;
     Cuts<N> cuts_;
-    std::array<std::uint32_t, N * N> cells_;  // highrices of one cell: [k][j], bit i
+    std::vector<HighRice> boxes_;             // highrices of several cells
+    std::array<std::uint32_t, N * N> cells_;  // those of one: [k][j], bit i
     Clouds clouds_;
     Cloud crossings_;       // of the whole block
     Ligns ligns_;
@@ -250,10 +257,11 @@ std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const J
         const BarShadow shadow(signs, N, y, z);
         BarBoxes& bar = bars[n];
         for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) {
-            if (shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x))) partition->climb({x, y, z}, bar);
+            const bool is_crossed = shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x));
+            if (is_crossed) partition->climb({x, y, z}, bar);
+            else bar.halvings.add_block(Fate::nothing);
         }
-        bar.boxes.shrink_to_fit();
-        bar.cell_rows.shrink_to_fit();
+        bar.halvings.shrink_to_fit();
     });
     return bars;
 }

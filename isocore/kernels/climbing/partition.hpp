@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "climbing/cloud.hpp"
-#include "climbing/high_rice.hpp"
+#include "climbing/halvings.hpp"
 #include "climbing/layout.hpp"
 #include "climbing/ligns.hpp"
 #include "climbing/site.hpp"
@@ -35,32 +34,10 @@ class Judge {
     Spot scale;  // from samples to that unit
 };
 
-// The highrices of one cell in half a row of a block, a bit for each.
-class CellRow {
-  public:
-    static constexpr int kHalf = 16;
-
-    // cells: of the half, 0 for the first.
-    CellRow(int j, int k, int half, unsigned cells)
-        : cells_(cells & 0xffff), j_(static_cast<unsigned>(j) & 31), k_(static_cast<unsigned>(k) & 31), half_(static_cast<unsigned>(half) & 1) {}
-    int j() const { return static_cast<int>(j_); }
-    int k() const { return static_cast<int>(k_); }
-    std::uint32_t cells() const { return std::uint32_t{cells_} << kHalf * half_; }
-
-  private:
-    std::uint32_t cells_ : 16, j_ : 5, k_ : 5, half_ : 1;
-};
-
-// A block with samples on both sides; the next `boxes` and `cell_rows` of its bar are its highrices.
-struct VisitedBlock {
-    std::uint32_t x, boxes, cell_rows;
-};
-
 // A row of blocks along the first axis: the unit of parallel work.
 struct BarBoxes {
-    std::vector<VisitedBlock> blocks;
-    std::vector<StoredRice> boxes;
-    std::vector<CellRow> cell_rows;
+    Halvings halvings;
+    std::size_t blocks = 0, highrices = 0;  // blocks with samples on both sides, and what they are halved down to
 };
 
 // Finds the highrices of all bars, [z][y], and keeps the crossings on their edges. Without a judge every box is flat. The

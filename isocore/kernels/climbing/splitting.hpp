@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "climbing/bars.hpp"
+#include "climbing/halvings.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/rim.hpp"
 #include "climbing/site.hpp"
@@ -33,59 +36,104 @@ inline unsigned corners_of(const SignGrid& signs, const Dims& origin, const High
     return out;
 }
 
-// Cuts a box that holds a disk down to boxes that do: its parts are as simple, but their corners need not show it.
-inline void halve(const SignGrid& signs, const Dims& origin, const HighRice& box, std::vector<HighRice>& out) {
-    std::size_t axis = 0;
-    for (std::size_t a = 1; a < 3; ++a) {
-        if (box.length(a) > box.length(axis)) axis = a;
-    }
-    HighRice below = box, above = box;
-    below.high[axis] = above.low[axis] = static_cast<std::uint8_t>((box.low[axis] + box.high[axis]) / 2);
-    for (const HighRice& half : {below, above}) {
-        const Content content = kContents[corners_of(signs, origin, half)];
-        if (content == Content::nothing) continue;
-        if (content == Content::disk || half.is_cell()) out.push_back(half);
-        else halve(signs, origin, half, out);
-    }
-}
-
-inline void split_bar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late) {
-    std::vector<StoredRice> boxes;
-    std::vector<CellRow> cell_rows;
-    auto broken = bar.broken.begin();
-    std::size_t block = 0, box = 0;
-    bars.visit(number, [&](const Dims& origin, std::span<const StoredRice> old_boxes, std::span<const CellRow> old_rows) {
-        const std::size_t boxes_before = boxes.size(), rows_before = cell_rows.size();
-        cell_rows.insert(cell_rows.end(), old_rows.begin(), old_rows.end());
-        for (const StoredRice& old : old_boxes) {
-            if (broken == bar.broken.end() || *broken != box++) {
-                boxes.push_back(old);
-                continue;
-            }
-            ++broken;
-            std::vector<HighRice> parts;
-            halve(signs, origin, old.box(), parts);
-            for (const HighRice& part : parts) {
-                late.push_back({origin, part});
-                const auto [i, j, k] = part.low;
-                if (part.is_cell()) cell_rows.emplace_back(j, k, i / CellRow::kHalf, 1u << i % CellRow::kHalf);
-                else boxes.emplace_back(part);
+// Writes the halvings of a bar anew: boxes that break the bound are halved until their parts hold disks again. These are
+// as simple, but their corners need not show it.
+class BrokenBar {
+  public:
+    BrokenBar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late)
+        : signs_(signs), bar_(bar), late_(late), origin_(bars.origin(number)), old_(bar.halvings), broken_(bar.broken.begin()) {
+        const int size = static_cast<int>(bars.block_size);
+        for (; origin_[0] + 1 < signs.dims[0]; origin_[0] += bars.block_size) {
+            for (std::size_t a = 0; a < 3; ++a) cells_[a] = static_cast<int>(std::min(bars.block_size, signs.dims[a] - 1 - origin_[a]));
+            const Fate fate = old_.next_block();
+            const Piece block = Piece::block(size);
+            if (is_broken(fate)) {
+                new_.add_block(Fate::halved);
+                halve(block);
+            } else {
+                new_.add_block(fate);
+                if (fate == Fate::halved) copy(block);
             }
         }
-        bar.blocks[block].boxes = static_cast<std::uint32_t>(boxes.size() - boxes_before);
-        bar.blocks[block++].cell_rows = static_cast<std::uint32_t>(cell_rows.size() - rows_before);
-    });
-    bar.boxes = std::move(boxes);
-    bar.cell_rows = std::move(cell_rows);
-    bar.split_again += bar.broken.size();
-    bar.broken.clear();
-}
+        new_.shrink_to_fit();
+        bar.halvings = std::move(new_);
+        bar.split_again += bar.broken.size();
+        bar.broken.clear();
+    }
+
+  private:
+    // Of a piece that was halved before.
+    void copy(const Piece& piece) {
+        if (piece.depth() == 1) return;
+        const Halving before = old_.next(piece.axes());
+        const auto [lower, upper] = piece.halves(before.axis);
+        const bool is_lower_broken = is_broken(before.lower), is_upper_broken = is_broken(before.upper);
+        new_.add(piece.axes(), {before.axis, is_lower_broken ? Fate::halved : before.lower, is_upper_broken ? Fate::halved : before.upper});
+        if (is_lower_broken) halve(lower);
+        else if (before.lower == Fate::halved) copy(lower);
+        if (is_upper_broken) halve(upper);
+        else if (before.upper == Fate::halved) copy(upper);
+    }
+
+    // Along the longest axis.
+    void halve(const Piece& piece) {
+        const HighRice box = piece.within(cells_);
+        auto axis = static_cast<unsigned>(std::countr_zero(piece.axes()));
+        for (unsigned a = 0; a < 3; ++a) {
+            if (box.length(a) > box.length(axis)) axis = a;
+        }
+        const auto [lower, upper] = piece.halves(axis);
+        const Fate of_lower = fate(lower, box), of_upper = fate(upper, box);
+        if (piece.depth() > 1) new_.add(piece.axes(), {static_cast<std::uint8_t>(axis), of_lower, of_upper});
+        settle(lower, of_lower);
+        settle(upper, of_upper);
+    }
+
+    void settle(const Piece& piece, Fate fate) {
+        if (fate == Fate::halved) {
+            halve(piece);
+        } else if (fate == Fate::highrice) {
+            ++bar_.highrices;
+            late_.push_back({origin_, piece.within(cells_)});
+        }
+    }
+
+    // Of a half of a box. At the volume's end the upper half may lie past it; then the lower one is as good as the whole.
+    Fate fate(const Piece& half, const HighRice& whole) const {
+        const HighRice box = half.within(cells_);
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (box.length(a) == 0) return Fate::nothing;
+        }
+        const Content content = kContents[corners_of(signs_, origin_, box)];
+        if (content == Content::nothing) return Fate::nothing;
+        const bool is_enough = content == Content::disk && box != whole;
+        return is_enough || half.depth() == 0 ? Fate::highrice : Fate::halved;
+    }
+
+    // Of a piece that fared so, and is the bar's next box if it is a highrice.
+    bool is_broken(Fate fate) {
+        if (fate != Fate::highrice || broken_ == bar_.broken.end() || box_++ != *broken_) return false;
+        ++broken_;
+        --bar_.highrices;
+        return true;
+    }
+
+    const SignGrid& signs_;
+    Bar& bar_;
+    std::vector<LateBox>& late_;
+    Dims origin_;               // of the block
+    std::array<int, 3> cells_;  // of the block
+    HalvingsReader old_;
+    Halvings new_;
+    std::vector<std::size_t>::const_iterator broken_;
+    std::size_t box_ = 0;       // the next one of several cells
+};
 
 // Halves the boxes that broke the bound, and returns their parts; the bars that these touch are stale then.
 inline std::vector<LateBox> split_broken(const SignGrid& signs, Bars& bars) {
     std::vector<LateBox> late;
     for (std::size_t n = 0; n < bars.bars.size(); ++n) {
-        if (!bars.bars[n].broken.empty()) split_bar(signs, bars, n, bars.bars[n], late);
+        if (!bars.bars[n].broken.empty()) BrokenBar(signs, bars, n, bars.bars[n], late);
     }
     for (const auto& [origin, box] : late) {
         // A sample between two bars lies on both.
