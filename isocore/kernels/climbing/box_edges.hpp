@@ -8,38 +8,12 @@
 #include <span>
 
 #include "climbing/drawn_site.hpp"
+#include "climbing/edge.hpp"
 #include "climbing/high_rice.hpp"
 #include "common/array.hpp"
 #include "common/set_bits.hpp"
 
 namespace isocore::climbing {
-
-// A grid edge: its axis and its lower sample, a byte each. In one word, as whole words are copied faster than parts.
-class Edge {
-  public:
-    Edge() = default;
-    static constexpr Edge along_x(unsigned i, unsigned j, unsigned k) { return Edge(i | j << 8 | k << 16); }
-    Edge further_along_x(int steps) const { return Edge(word_ + static_cast<std::uint32_t>(steps)); }
-    Edge of_axis(int axis) const { return Edge(word_ | static_cast<std::uint32_t>(axis) << 24); }
-
-    unsigned axis() const { return word_ >> 24; }
-    int at(std::size_t a) const { return static_cast<int>(word_ >> 8 * a & 255); }
-    Place at() const { return {at(0), at(1), at(2)}; }
-
-    // The faces of a box that it lies on, a bit each.
-    unsigned faces(const HighRice& box) const {
-        const auto equal = [&](const std::array<std::uint8_t, 3>& end) {  // a bit above each byte, none of which exceeds 127
-            const std::uint32_t off = (word_ ^ (end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16)) & 0x7f7f7f;
-            return ~(off + 0x7f7f7f) & 0x808080;
-        };
-        const std::uint32_t pairs = equal(box.low) >> 7 | equal(box.high) >> 6;
-        return (pairs | pairs >> 6 | pairs >> 12) & 63 & ~(3u << 2 * axis());
-    }
-
-  private:
-    explicit constexpr Edge(std::uint32_t word) : word_(word) {}
-    std::uint32_t word_;
-};
 
 // Finds them by whole rows of the block.
 class BoxEdges {

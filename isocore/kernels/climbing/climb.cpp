@@ -40,23 +40,19 @@ class Gatherer final : public Judge {
 
     void gather(const Site& site, Clouds& clouds, Ligns& ligns) const override {
         struct Row {
-            std::uint8_t axis, j, k;
+            Edge start;
+            Ligns::Row ligns;
         };
         SetBits<Row, 64> found;
         Spotter<Sample> spotter(samples_, signs_, isovalue_);
-        const std::size_t samples = site.samples();
-        ligns.clear(samples);
+        ligns.clear(site.samples());
         std::array<std::uint32_t, Spotter<Sample>::kRoom> edges;
         static_assert(edges.size() >= 64 * 33);
         const auto add = [&] {
             std::size_t size = 0;
             found.visit([&](const Row& row, int i) {
-                const int j = row.j, k = row.k;
-                spotter.add(site.origin, row.axis, {i, j, k});
-                const int first = row.axis == 0 ? j : i, second = row.axis == 2 ? j : k, along = row.axis == 0 ? i : row.axis == 1 ? j : k;
-                const std::size_t lign = Ligns::lign(samples, row.axis, first, second);
-                ligns.crossed[lign] |= std::uint64_t{1} << along;
-                edges[size++] = static_cast<std::uint32_t>(Ligns::edge(samples, lign, along));
+                spotter.add(site.origin, static_cast<int>(row.start.axis()), {i, row.start.at(1), row.start.at(2)});
+                edges[size++] = static_cast<std::uint32_t>(ligns.cross(row.ligns, i));
             });
             spotter.visit(scale, [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
                 clouds.add(places, count);
@@ -64,13 +60,10 @@ class Gatherer final : public Judge {
                 for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];
             });
         };
-        for (int k = 0; k <= site.cells[2]; ++k) {
-            for (int j = 0; j <= site.cells[1]; ++j) {
-                for (std::uint8_t axis = 0; axis < 3; ++axis) {
-                    found.add(site.row(j, k).crossed[axis], {axis, static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k)});
-                    if (found.full()) add();
-                }
-            }
+        for (const Edge& start : site.crossed_rows()) {
+            const int j = start.at(1), k = start.at(2);
+            found.add(site.row(j, k).crossed[start.axis()], {start, Ligns::row(site.samples(), start.axis(), j, k)});
+            if (found.full()) add();
         }
         add();
     }
@@ -127,7 +120,7 @@ class Climb {
         for (const Bar& bar : bars_.bars) most -= 2 * bar.highrices;
         mesh_.triangles.resize(3 * most);
         InOrder triangles(bars_.bars.size(), mesh_.triangles);
-        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { triangles.put(n, part); });
+        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { triangles.put(n, part); }, [&](std::size_t n) { triangles.end(n); });
         mesh_.triangles.resize(3 * place_bars(bars_));
     }
 
@@ -140,7 +133,10 @@ class Climb {
         std::vector<std::size_t> before;
         for (const Bar& bar : bars_.bars) before.push_back(bar.first_triangle);
         Redrawn redrawn(bars_.bars.size());
-        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { redrawn[n].emplace(part.begin(), part.end()); });
+        for (std::size_t n = 0; n < redrawn.size(); ++n) {
+            if (bars_.bars[n].stale) redrawn[n].emplace();
+        }
+        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { redrawn[n]->insert(redrawn[n]->end(), part.begin(), part.end()); }, [](std::size_t) {});
         const std::size_t size = 3 * place_bars(bars_);
         mesh_.triangles.resize(std::max(mesh_.triangles.size(), size));
         move_triangles(before, redrawn, bars_, mesh_.triangles);
@@ -172,13 +168,16 @@ class Climb {
     // Room is left for so large a share of vertices that late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
-    // Calls put(number, triangles) for each bar that is stale, from any thread.
-    template <class Put>
-    void draw_stale(const Put& put) {
+    // Calls put(number, some triangles), then end(number), for each bar that is stale, from any thread.
+    template <class Put, class End>
+    void draw_stale(const Put& put, const End& end) {
         using AnyDrawer = Drawer<Sample, Coordinate>;
         const auto make = [&] { return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data()); };
         parallel_for(options_.threads, bars_.bars.size(), make, [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
-            if (Bar& bar = bars_.bars[n]; bar.stale) put(n, drawer->draw(bars_, n, bar));
+            Bar& bar = bars_.bars[n];
+            if (!bar.stale) return;
+            drawer->draw(bars_, n, bar, [&](std::span<const std::int32_t> part) { put(n, part); });
+            end(n);
         });
     }
 

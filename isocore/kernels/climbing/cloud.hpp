@@ -2,6 +2,7 @@
 // to the block and in the unit of the error bound.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -32,14 +33,15 @@ inline LaneMask<float> within(const Extent& box, const Numbers& x, const Numbers
            (z <= box.high[2]);
 }
 
-// A stack of clouds. Room for all levels of a block is made once, so that pushing never moves what lies below.
+// A stack of clouds: of a block, of one of its halves, of one of that one's halves, and so on.
 class Clouds {
   public:
-    // Forgets everything and makes room for `levels` clouds of at most `size` points.
-    void reset(std::size_t size, std::size_t levels) {
-        for (auto& axis : places_) axis.resize((size + 2 * kLanes<float>) * levels);
-        start_ = top_ = 0;
+    // Room for as many as any block of that size can need is made once: pushing must never move what lies below. Most of it
+    // is never touched, and so takes no memory.
+    explicit Clouds(int block_size) {
+        for (auto& axis : places_) axis.resize(room({block_size, block_size, block_size}));
     }
+    void clear() { start_ = top_ = 0; }
     // Adds the first `count` lanes.
     void add(const Vector<Numbers>& spots, std::size_t count) {
         for (std::size_t a = 0; a < 3; ++a) spots[a].store(places_[a].data() + top_);
@@ -72,6 +74,18 @@ class Clouds {
     }
 
   private:
+    // For a box of cells whose edges are all crossed, and for one half after the other.
+    static std::size_t room(const std::array<int, 3>& cells) {
+        const auto edges = [&](std::size_t a, std::size_t b, std::size_t c) { return cells[a] * (cells[b] + 1) * (cells[c] + 1); };
+        std::size_t below = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            std::array<int, 3> half = cells;
+            half[a] /= 2;
+            if (half[a] > 0) below = std::max(below, room(half));
+        }
+        return static_cast<std::size_t>(edges(0, 1, 2) + edges(1, 2, 0) + edges(2, 0, 1)) + 2 * kLanes<float> + below;
+    }
+
     std::array<Array<float>, 3> places_;
     std::size_t start_ = 0, top_ = 0;
 };

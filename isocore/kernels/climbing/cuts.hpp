@@ -46,15 +46,11 @@ class Cuts {
         };
         std::array<Part, 3 * (N + 1) * (N + 1) + 1> parts;  // those where anything is to be kept, found without a branch for each
         Part* end = parts.data();
-        for (int k = 0; k <= site.cells[2]; ++k) {
-            for (int j = 0; j <= site.cells[1]; ++j) {
-                const Site::Row& row = site.row(j, k);
-                const auto& cuts = rows_[index(j, k)];
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    *end = {row.crossed[axis], cuts[axis], row.first_crossing[axis]};
-                    end += (end->crossed & end->cut) != 0;
-                }
-            }
+        for (const Edge& start : site.crossed_rows()) {
+            const int j = start.at(1), k = start.at(2);
+            const Site::Row& row = site.row(j, k);
+            *end = {row.crossed[start.axis()], rows_[index(j, k)][start.axis()], row.first_crossing[start.axis()]};
+            end += (end->crossed & end->cut) != 0;
         }
         for (const Part* part = parts.data(); part != end; ++part) layout.keep(part->crossed, part->cut, part->first);
     }

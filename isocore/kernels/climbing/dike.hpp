@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "common/inlined.hpp"
+
 namespace isocore::climbing {
 
 using Label = unsigned;
@@ -33,17 +35,17 @@ struct DikeBits {
     static constexpr int bit(Label label) { return kBits[label]; }
 
     // The dikes with a marked sample, their ends included.
-    static Word over_samples(Word marked) { return over_steps(marked | marked >> 1); }
+    ISOCORE_INLINED static Word over_samples(Word marked) { return over_steps(marked | marked >> 1); }
     // The dikes with a marked step from one sample to the next.
-    static Word over_steps(Word marked) { return units(marked) | widened<1>(marked); }
+    ISOCORE_INLINED static Word over_steps(Word marked) { return units(marked) | widened<1>(marked); }
     // The dikes that start, or end, at a marked sample.
-    static Word starting(Word marked) { return units(marked) | shifted<1, 0>(marked); }
-    static Word ending(Word marked) { return units(marked >> 1) | shifted<1, 1>(marked); }
+    ISOCORE_INLINED static Word starting(Word marked) { return units(marked) | shifted<1, 0>(marked); }
+    ISOCORE_INLINED static Word ending(Word marked) { return units(marked >> 1) | shifted<1, 1>(marked); }
     // The dikes whose lower, or upper, halves are marked.
-    static Word with_lower_half(Word marked) { return halves<2, 0>(marked); }
-    static Word with_upper_half(Word marked) { return halves<2, 1>(marked); }
+    ISOCORE_INLINED static Word with_lower_half(Word marked) { return halves<2, 0>(marked); }
+    ISOCORE_INLINED static Word with_upper_half(Word marked) { return halves<2, 1>(marked); }
     // The dikes that are crossed several times, by the samples of their lign.
-    static Word crossed_again(Word lign) { return doubled<1>((lign ^ lign >> 1) & kUnits, 0); }
+    ISOCORE_INLINED static Word crossed_again(Word lign) { return doubled<1>((lign ^ lign >> 1) & kUnits, 0); }
 
   private:
     static constexpr std::array<std::uint8_t, 2 * N> kBits = [] {
@@ -56,7 +58,7 @@ struct DikeBits {
 
     // Level by level, from dikes of length `half` to those twice as long; templates, so that loops over them vectorise.
     template <int half>
-    static Word widened(Word marked) {
+    ISOCORE_INLINED static Word widened(Word marked) {
         if constexpr (half < N) {
             marked |= marked >> half;
             return (marked & starts(2 * half)) << half | widened<2 * half>(marked);
@@ -64,12 +66,12 @@ struct DikeBits {
         return 0;
     }
     template <int half, int at_end>
-    static Word shifted(Word marked) {
+    ISOCORE_INLINED static Word shifted(Word marked) {
         if constexpr (half < N) return (marked >> 2 * half * at_end & starts(2 * half)) << half | shifted<2 * half, at_end>(marked);
         return 0;
     }
     template <int half>
-    static Word doubled(Word any, Word several) {
+    ISOCORE_INLINED static Word doubled(Word any, Word several) {
         if constexpr (half < N) {
             const Word twice = (several | several >> half | (any & any >> half)) & starts(2 * half);
             return twice << half | doubled<2 * half>((any | any >> half) & starts(2 * half), twice);
@@ -77,12 +79,12 @@ struct DikeBits {
         return 0;
     }
     template <int length, int upper>
-    static Word halves(Word marked) {
+    ISOCORE_INLINED static Word halves(Word marked) {
         if constexpr (length > N) return 0;
         else if constexpr (length == 2) return (marked >> (N - 1) >> upper & starts(2) << 1) | halves<4, upper>(marked);
         else return ((upper ? marked >> length / 4 : marked << length / 4) & starts(length) << length / 2) | halves<2 * length, upper>(marked);
     }
-    static Word units(Word marked) { return static_cast<Word>((marked & kUnits) << (N - 1) << 1); }
+    ISOCORE_INLINED static Word units(Word marked) { return static_cast<Word>((marked & kUnits) << (N - 1) << 1); }
     // Samples at which dikes of a length start.
     static constexpr Word starts(int length) {
         Word out = 0;

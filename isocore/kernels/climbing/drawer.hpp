@@ -35,14 +35,15 @@ class Drawer {
           edges_(options.block_size),
           ruler_(samples, signs, options) {}
 
-    // The triangles of a bar, until the next one is drawn; boxes that break the bound are noted in bar.broken.
-    std::span<const std::int32_t> draw(const Bars& bars, std::size_t number, Bar& bar) {
-        drawn_ = 0;
+    // Calls put(triangles) for some of a bar's triangles after the other; boxes that break the bound are noted in bar.broken.
+    template <class Put>
+    void draw(const Bars& bars, std::size_t number, Bar& bar, const Put& put) {
+        bar.triangles = 0;
         bar.ambiguous_faces = bar.ambiguous_cells = 0;
         bar.in_voxels = bar.in_world = {};
         bar.broken.clear();
         bar.stale = false;
-        if (bar.blocks == 0) return {};
+        if (bar.blocks == 0) return;
         const auto [start, y, z] = bars.origin(number);
         site_.begin(signs_, layout_, y, z);
         HalvingsReader halvings(bar.halvings);
@@ -58,10 +59,11 @@ class Drawer {
                 if (options_.measured) ruler_.add(site_.origin, box, boxes++, edges_.dropped(), polygon_, triangles_, bar);
             }
             rices_.visit_cells(site_, [&](int j, int k, std::uint64_t cells) { draw_cells(bar, j, k, cells); });
+            put(std::span<const std::int32_t>(vertices_of_triangles_.data(), drawn_));
+            bar.triangles += drawn_ / 3;
+            drawn_ = 0;
         }
         if (options_.measured) ruler_.take(bar);
-        bar.triangles = drawn_ / 3;
-        return {vertices_of_triangles_.data(), drawn_};
     }
 
   private:

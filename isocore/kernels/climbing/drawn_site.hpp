@@ -1,6 +1,7 @@
 // drawn_site.hpp - A site once it is known which crossings are vertices, of its own boxes or of its neighbours'.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,9 +19,9 @@ class DrawnSite : public Site {
 
     // What becomes of the crossed edges that start in a row.
     struct Cut {
-        std::array<std::uint64_t, 3> kept;          // along each axis
-        std::array<std::uint32_t, 3> first_vertex;  // the numbers of the first of them
-        std::array<Half, 2> kept_halves, dropped_halves;
+        std::array<std::uint64_t, 3> kept{};          // along each axis
+        std::array<std::uint32_t, 3> first_vertex{};  // the numbers of the first of them, where there are any
+        std::array<Half, 2> kept_halves{}, dropped_halves{};
     };
 
     using Site::Site;
@@ -39,7 +40,22 @@ class DrawnSite : public Site {
 
     void load(std::size_t x) {
         Site::load(x);
-        for_rows([&](int j, int k) { load_cut(j, k); });
+        std::fill_n(cuts_.begin(), samples() * samples(), Cut{});
+        const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
+        for (const Edge& start : crossed_rows()) {
+            const std::size_t row = row_index(start.at(1), start.at(2)), axis = start.axis();
+            const Row& here = this->row(start.at(1), start.at(2));
+            const std::uint64_t crossed = here.crossed[axis], kept = layout_->kept(crossed, here.first_crossing[axis]);
+            Cut& out = cuts_[row];
+            out.kept[axis] = kept;
+            out.first_vertex[axis] = next_vertices_[row][axis];
+            next_vertices_[row][axis] += ones(kept & own);
+            for (std::size_t half = 0; half <= static_cast<std::size_t>(cells[0] > kHalf); ++half) {
+                const auto window = [&](std::uint64_t edges) { return (edges >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis; };
+                out.kept_halves[half] |= window(kept);
+                out.dropped_halves[half] |= window(crossed ^ kept);
+            }
+        }
     }
 
     const Cut& cut(int j, int k) const { return cuts_[row_index(j, k)]; }
@@ -51,27 +67,6 @@ class DrawnSite : public Site {
     }
 
   private:
-    void load_cut(int j, int k) {
-        const Row& here = row(j, k);
-        Cut& out = cuts_[row_index(j, k)];
-        auto& next = next_vertices_[row_index(j, k)];
-        out.first_vertex = next;
-        const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            out.kept[axis] = layout_->kept(here.crossed[axis], here.first_crossing[axis]);
-            next[axis] += ones(out.kept[axis] & own);
-        }
-        for (std::size_t half = 0; half <= static_cast<std::size_t>(cells[0] > kHalf); ++half) {
-            out.kept_halves[half] = pack(out.kept, half);
-            out.dropped_halves[half] = pack(here.crossed, half) ^ out.kept_halves[half];
-        }
-    }
-
-    static Half pack(const std::array<std::uint64_t, 3>& edges, std::size_t half) {
-        const auto part = [&](std::size_t axis) { return (edges[axis] >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis; };
-        return part(0) | part(1) | part(2);
-    }
-
     std::array<Cut, kRows> cuts_;
     std::array<std::array<std::uint32_t, 3>, kRows> next_vertices_;  // what comes after the blocks that were loaded
 };

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/array.hpp"
@@ -15,30 +15,38 @@ namespace isocore::climbing {
 
 class InOrder {
   public:
-    // Of `count` parts, which all fit into `out`.
+    // Of `count` bars, whose triangles all fit into `out`.
     InOrder(std::size_t count, Array<std::int32_t>& out) : early_(count), out_(out) {}
 
-    // Part n, from any thread, each once. One that comes before its turn is kept aside.
+    // More triangles of bar n, from any thread. What comes before its turn is kept aside.
     void put(std::size_t n, std::span<const std::int32_t> part) {
         const std::lock_guard<std::mutex> lock(guard_);
-        if (n != next_) {
-            early_[n].emplace(part.begin(), part.end());
-            return;
+        if (n == next_) append(part);
+        else early_[n].triangles.insert(early_[n].triangles.end(), part.begin(), part.end());
+    }
+    // The end of bar n, each once.
+    void end(std::size_t n) {
+        const std::lock_guard<std::mutex> lock(guard_);
+        early_[n].is_ended = true;
+        while (next_ < early_.size() && early_[next_].is_ended) {
+            if (++next_ < early_.size()) append(std::exchange(early_[next_].triangles, {}));
         }
-        append(part);
-        for (; next_ < early_.size() && early_[next_]; early_[next_ - 1].reset()) append(*early_[next_]);
     }
 
   private:
+    struct Early {
+        std::vector<std::int32_t> triangles;
+        bool is_ended = false;
+    };
+
     void append(std::span<const std::int32_t> part) {
         std::copy(part.begin(), part.end(), out_.begin() + static_cast<std::ptrdiff_t>(size_));
         size_ += part.size();
-        ++next_;
     }
 
     std::mutex guard_;
-    std::size_t next_ = 0, size_ = 0;  // parts and numbers that are out
-    std::vector<std::optional<std::vector<std::int32_t>>> early_;
+    std::size_t next_ = 0, size_ = 0;  // the bar whose turn it is, and numbers that are out
+    std::vector<Early> early_;
     Array<std::int32_t>& out_;
 };
 

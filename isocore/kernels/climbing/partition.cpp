@@ -25,11 +25,12 @@ template <int N>
 class Partition {
   public:
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
-        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N) {}
+        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N), clouds_(N) {}
 
     // Adds a block to its bar. A bar's blocks come in their order; those whose samples lie on one side are left out.
     void climb(const Dims& origin, BarBoxes& bar) {
         block_.load(signs_, origin);
+        measure_dikes();
         survey_.take(block_, !judge_);
         if (bar.blocks++ == 0) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
@@ -63,18 +64,11 @@ class Partition {
     // Cells in a box from which on looking further pays; never where a judge has to look at all crossings.
     static constexpr int kWorthALook = 32;
     static constexpr std::size_t kWorthFiltering = 16;  // crossings around a box
-    static constexpr std::size_t kLevels = 3 * Dikes::kDepth + 1;
 
     static constexpr int kAccepted = Survey<N>::kAccepted, kSplit = Survey<N>::kSplit;
 
     void gather() {
-        std::size_t count = 0;
-        for (int k = 0; k <= site_.cells[2]; ++k) {
-            for (int j = 0; j <= site_.cells[1]; ++j) {
-                for (const std::uint64_t crossed : site_.row(j, k).crossed) count += static_cast<std::size_t>(std::popcount(crossed));
-            }
-        }
-        clouds_.reset(count, kLevels);
+        clouds_.clear();
         judge_->gather(site_, clouds_, ligns_);
         crossings_ = clouds_.finish();
     }
@@ -122,7 +116,7 @@ class Partition {
         const std::size_t size = rim.length > 4 ? 6 : 4;
         for (std::size_t n = 0; n < size; ++n) ring[n] = along_edge(ends, kSides[rim.edges[n]]);
         std::fill(ring.begin() + size, ring.end(), ring[0]);
-        return flat_(around, extent(rice), corners, ring);
+        return flat_(around, extent(box), corners, ring);
     }
 
     // Where the one crossing on an edge of a simple box is along its axis.
@@ -144,7 +138,7 @@ class Partition {
 
     void split(const Box& box, const Cloud& around, Halvings& halvings) {
         const std::size_t top = clouds_.top();
-        const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(high_rice(box))) : around;
+        const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
         const Choice choice = best_axis(box, here);
         const auto parts = halves(box, choice.axis);
         if (!is_cell(parts[0])) halvings.add(axes(box), {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
@@ -207,34 +201,52 @@ class Partition {
         return sum;
     }
 
+    static constexpr int kMoreThanAnyLength = 64, kMoreThanAnyCost = 1 << 10;
+    // Of dikes: long ones come first, and those that cannot be halved last.
+    static constexpr std::array<int, 2 * N> kRanks = [] {
+        std::array<int, 2 * N> ranks{};
+        for (Label label = 1; label < 2 * N; ++label) ranks[label] = 4 * ((Dikes::is_unit(label) ? kMoreThanAnyLength * kMoreThanAnyCost : 0) - Dikes::length(label));
+        return ranks;
+    }();
     static int rank(const Box& box, std::size_t axis, int cost) {
-        constexpr int kMoreThanAnyLength = 64, kMoreThanAnyCost = 1 << 10;
-        const int thick = kMoreThanAnyCost * static_cast<int>(Dikes::is_unit(box[axis])) + cost;
-        return 4 * (kMoreThanAnyLength * thick - Dikes::length(box[axis])) + static_cast<int>(axis);
+        return kRanks[box[axis]] + 4 * kMoreThanAnyLength * cost + static_cast<int>(axis);
     }
 
-    Extent extent(const HighRice& box) const {
-        Extent out;
+    // Where dikes lie, as far as they do in the volume; the same for most blocks.
+    void measure_dikes() {
         for (std::size_t a = 0; a < 3; ++a) {
-            out.low[a] = static_cast<float>(box.low[a]) * judge_->scale[a];
-            out.high[a] = static_cast<float>(box.high[a]) * judge_->scale[a];
+            if (measured_[a] == block_.cells[a]) continue;
+            measured_[a] = block_.cells[a];
+            const float scale = judge_ ? judge_->scale[a] : 1;
+            for (Label label = 1; label < 2 * N; ++label) {
+                const int low = Dikes::start(label), high = std::min(Dikes::end(label), measured_[a]);
+                dikes_[a][label] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high), static_cast<float>(low) * scale, static_cast<float>(high) * scale};
+            }
         }
-        return out;
+    }
+
+    Extent extent(const Box& box) const {
+        const Segment &x = dikes_[0][box[0]], &y = dikes_[1][box[1]], &z = dikes_[2][box[2]];
+        return {{x.from, y.from, z.from}, {x.to, y.to, z.to}};
     }
 
     HighRice high_rice(const Box& box) const {
-        HighRice rice;
-        for (std::size_t a = 0; a < 3; ++a) {
-            rice.low[a] = static_cast<std::uint8_t>(Dikes::start(box[a]));
-            rice.high[a] = static_cast<std::uint8_t>(std::min(Dikes::end(box[a]), block_.cells[a]));
-        }
-        return rice;
+        const Segment &x = dikes_[0][box[0]], &y = dikes_[1][box[1]], &z = dikes_[2][box[2]];
+        return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
     }
+
+    // A dike in samples from the block's origin, and in the unit of the bound.
+    struct Segment {
+        std::uint8_t low, high;
+        float from, to;
+    };
 
     const SignGrid& signs_;
     Layout& layout_;
     const Judge* judge_;
     Flatness flat_;
+    std::array<int, 3> measured_{};                          // cells along each axis
+    std::array<std::array<Segment, 2 * N>, 3> dikes_;
     Block<N> block_;
     Survey<N> survey_;
     Site site_;

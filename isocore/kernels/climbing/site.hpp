@@ -7,14 +7,14 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "climbing/edge.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/layout.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
-
-using Place = std::array<int, 3>;
 
 class Site {
   public:
@@ -23,7 +23,7 @@ class Site {
     struct Row {
         std::uint64_t signs;
         std::array<std::uint64_t, 3> crossed;         // edges along each axis that start in this row
-        std::array<std::uint32_t, 3> first_crossing;  // the numbers of the first among them
+        std::array<std::uint32_t, 3> first_crossing;  // the numbers of the first among them, where there are any
     };
 
     explicit Site(int block_size) : stride_(block_size + 1) {}
@@ -46,13 +46,21 @@ class Site {
     void load(std::size_t x) {
         origin[0] = x;
         set_size(0);
-        const std::uint64_t samples = (std::uint64_t{2} << cells[0]) - 1;
+        const std::uint64_t samples = (std::uint64_t{2} << cells[0]) - 1, own = ends_grid[0] ? samples : samples >> 1;
         for_rows([&](int j, int k) {
             const auto [gj, gk] = in_grid(j, k);
             rows_[row_index(j, k)].signs = samples_from(signs_->row(gj, gk), x) & samples;
         });
-        for_rows([&](int j, int k) { find_crossings(j, k, samples); });
+        find_crossed_rows(samples);
+        for (const Edge& start : crossed_rows()) {
+            const std::size_t row = row_index(start.at(1), start.at(2)), axis = start.axis();
+            rows_[row].first_crossing[axis] = next_crossings_[row][axis];
+            next_crossings_[row][axis] += ones(rows_[row].crossed[axis] & own);
+        }
     }
+
+    // The rows in which any edges along an axis are crossed, as the first of those edges.
+    std::span<const Edge> crossed_rows() const { return {crossed_rows_.data(), crossed_size_}; }
 
     const Row& row(int j, int k) const { return rows_[row_index(j, k)]; }
 
@@ -106,20 +114,26 @@ class Site {
         ends_grid[axis] = static_cast<std::size_t>(cells[axis]) == left;
     }
 
-    void find_crossings(int j, int k, std::uint64_t samples) {
-        Row& out = rows_[row_index(j, k)];
-        const std::uint64_t own = ends_grid[0] ? samples : samples >> 1;
-        out.crossed[0] = (out.signs ^ out.signs >> 1) & samples >> 1;
-        out.crossed[1] = j < cells[1] ? out.signs ^ row(j + 1, k).signs : 0;
-        out.crossed[2] = k < cells[2] ? out.signs ^ row(j, k + 1).signs : 0;
-        auto& next = next_crossings_[row_index(j, k)];
-        out.first_crossing = next;
-        for (std::size_t axis = 0; axis < 3; ++axis) next[axis] += ones(out.crossed[axis] & own);
+    void find_crossed_rows(std::uint64_t samples) {
+        Edge* end = crossed_rows_.data();
+        for_rows([&](int j, int k) {
+            Row* const row = rows_.data() + row_index(j, k);
+            const Row &right = row[j < cells[1] ? 1 : 0], &up = row[k < cells[2] ? stride_ : 0];
+            row->crossed = {(row->signs ^ row->signs >> 1) & samples >> 1, row->signs ^ right.signs, row->signs ^ up.signs};
+            const Edge start = Edge::along_x(0, static_cast<unsigned>(j), static_cast<unsigned>(k));
+            for (int axis = 0; axis < 3; ++axis) {
+                *end = start.of_axis(axis);
+                end += row->crossed[static_cast<std::size_t>(axis)] != 0;
+            }
+        });
+        crossed_size_ = static_cast<std::size_t>(end - crossed_rows_.data());
     }
 
     int stride_;
     std::array<Row, kRows> rows_;
     std::array<std::array<std::uint32_t, 3>, kRows> next_crossings_;  // what comes after the blocks that were loaded
+    std::array<Edge, 3 * kRows + 1> crossed_rows_;                    // and room for one that is not
+    std::size_t crossed_size_ = 0;
 };
 
 }  // namespace isocore::climbing

@@ -13,6 +13,7 @@
 #include "climbing/block.hpp"
 #include "climbing/dike.hpp"
 #include "climbing/high_rice.hpp"
+#include "common/inlined.hpp"
 
 namespace isocore::climbing {
 
@@ -21,7 +22,7 @@ template <class Word>
 struct BoxCorners {
     Word crossed, disk;
 
-    constexpr explicit BoxCorners(const std::array<Word, 8>& c) {
+    ISOCORE_INLINED constexpr explicit BoxCorners(const std::array<Word, 8>& c) {
         const Word x0 = c[0] ^ c[1], x1 = c[2] ^ c[3], x2 = c[4] ^ c[5], x3 = c[6] ^ c[7];
         const Word y0 = c[0] ^ c[2], y1 = c[1] ^ c[3], y2 = c[4] ^ c[6], y3 = c[5] ^ c[7];
         const Word z0 = c[0] ^ c[4], z1 = c[1] ^ c[5], z2 = c[2] ^ c[6], z3 = c[3] ^ c[7];
@@ -112,7 +113,7 @@ class Survey {
     }
 
     // Faces between four ligns of which each of the middle two is a neighbour of both others.
-    static Word alternating(Word first, Word one, Word other, Word last) { return (first ^ one) & (first ^ other) & ~(first ^ last); }
+    ISOCORE_INLINED static Word alternating(Word first, Word one, Word other, Word last) { return (first ^ one) & (first ^ other) & ~(first ^ last); }
 
     // Marks what starts in plane j of the block.
     void mark_plane(const Block<N>& block, std::size_t j) {
@@ -251,7 +252,7 @@ class Survey {
     struct Halves {
         Word nothing[2], highrice[2];
 
-        std::array<Word, kSteps> at_most() const {
+        ISOCORE_INLINED std::array<Word, kSteps> at_most() const {
             const Word one_split = ~(nothing[0] | highrice[0]), other_split = ~(nothing[1] | highrice[1]), none_split = ~(one_split | other_split);
             const Word any_nothing = nothing[0] | nothing[1];
             return {nothing[0] & nothing[1], none_split & any_nothing, none_split, none_split | any_nothing, ~(one_split & other_split)};
