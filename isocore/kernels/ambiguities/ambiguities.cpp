@@ -19,15 +19,15 @@ namespace {
 
 // Faces across `axis` whose lowest samples lie in word w of row (j, k) and whose corners alternate.
 std::uint64_t alternating(const SignGrid& signs, int axis, std::size_t j, std::size_t k, std::size_t w) {
-    const std::uint64_t* row = signs.row(j, k);
     if ((axis != 1 && j + 1 == signs.dims[1]) || (axis != 2 && k + 1 == signs.dims[2])) return 0;
+    const SignRow row = signs.row(j, k);
+    const std::uint64_t here = row.word(w);
     if (axis == 0) {
-        const std::uint64_t right = signs.row(j + 1, k)[w], up = signs.row(j, k + 1)[w], both = signs.row(j + 1, k + 1)[w];
-        return (row[w] ^ right) & (row[w] ^ up) & ~(row[w] ^ both);
+        const std::uint64_t right = signs.row(j + 1, k).word(w), up = signs.row(j, k + 1).word(w), both = signs.row(j + 1, k + 1).word(w);
+        return (here ^ right) & (here ^ up) & ~(here ^ both) & signs.valid(w);
     }
-    const std::uint64_t* other = axis == 1 ? signs.row(j, k + 1) : signs.row(j + 1, k);
-    const std::uint64_t next = next_samples(row, w), other_next = next_samples(other, w);
-    return (row[w] ^ next) & (row[w] ^ other[w]) & ~(row[w] ^ other_next) & signs.valid(w, 1);
+    const SignRow other = axis == 1 ? signs.row(j, k + 1) : signs.row(j + 1, k);
+    return (here ^ row.next_word(w)) & (here ^ other.word(w)) & ~(here ^ other.next_word(w)) & signs.valid(w, 1);
 }
 
 template <class Sample>

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/bit_fields.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -17,10 +18,10 @@ class BarShadow {
     BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z) : any_(signs.words + 1, 0), all_(signs.words + 1, ~std::uint64_t{0}) {
         for (std::size_t k = z; k < std::min(z + N + 1, signs.dims[2]); ++k) {
             for (std::size_t j = y; j < std::min(y + N + 1, signs.dims[1]); ++j) {
-                const std::uint64_t* row = signs.row(j, k);
+                const SignRow row = signs.row(j, k);
                 for (std::size_t w = 0; w < signs.words; ++w) {
-                    any_[w] |= row[w];
-                    all_[w] &= row[w];
+                    any_[w] |= row.word(w);
+                    all_[w] &= row.word(w);
                 }
             }
         }
@@ -29,7 +30,7 @@ class BarShadow {
     // Does a block from sample x on hold any crossing, if it has so many cells along the bar?
     bool crosses(std::size_t x, std::size_t cells) const {
         const std::uint64_t samples = (std::uint64_t{2} << cells) - 1;
-        return (samples_from(any_.data(), x) & samples) != 0 && (samples_from(all_.data(), x) & samples) != samples;
+        return (bits_from(any_.data(), x) & samples) != 0 && (bits_from(all_.data(), x) & samples) != samples;
     }
 
   private:

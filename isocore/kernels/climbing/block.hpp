@@ -23,9 +23,9 @@ class Block {
         const Word kept = static_cast<Word>((std::uint64_t{2} << cells[0]) - 1), beyond = DikeBits<N>::kSamples & ~kept;
         for (int k = 0; k <= N; ++k) {
             for (int j = 0; j <= N; ++j) {
-                const std::uint64_t* row = signs.row(origin[1] + static_cast<std::size_t>(std::min(j, cells[1])),
-                                                     origin[2] + static_cast<std::size_t>(std::min(k, cells[2])));
-                Word bits = static_cast<Word>(samples_from(row, origin[0])) & kept;
+                const SignRow row = signs.row(origin[1] + static_cast<std::size_t>(std::min(j, cells[1])),
+                                              origin[2] + static_cast<std::size_t>(std::min(k, cells[2])));
+                Word bits = static_cast<Word>(row.from(origin[0])) & kept;
                 if (bits >> cells[0] & 1) bits |= beyond;
                 rows[static_cast<std::size_t>(j)][static_cast<std::size_t>(k)] = bits;
             }

@@ -39,7 +39,7 @@ class Clouds {
     // Room for as many as any block of that size can need is made once: pushing must never move what lies below. Most of it
     // is never touched, and so takes no memory.
     explicit Clouds(int block_size) {
-        for (auto& axis : places_) axis.resize(room({block_size, block_size, block_size}));
+        for (auto& axis : places_) axis.resize(room(block_size));
     }
     void clear() { start_ = top_ = 0; }
     // Adds the first `count` lanes.
@@ -74,16 +74,21 @@ class Clouds {
     }
 
   private:
-    // For a box of cells whose edges are all crossed, and for one half after the other.
-    static std::size_t room(const std::array<int, 3>& cells) {
-        const auto edges = [&](std::size_t a, std::size_t b, std::size_t c) { return cells[a] * (cells[b] + 1) * (cells[c] + 1); };
-        std::size_t below = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-            std::array<int, 3> half = cells;
-            half[a] /= 2;
-            if (half[a] > 0) below = std::max(below, room(half));
+    // For a block whose edges are all crossed, and for one half after the other, however it is halved.
+    static std::size_t room(int block_size) {
+        constexpr std::size_t kMost = 6;  // lengths are 1, 2, 4, ... 32
+        std::array<std::array<std::array<std::size_t, kMost>, kMost>, kMost> rooms;
+        for (std::size_t x = 0; x < kMost; ++x) {
+            for (std::size_t y = 0; y < kMost; ++y) {
+                for (std::size_t z = 0; z < kMost; ++z) {
+                    const std::size_t a = std::size_t{1} << x, b = std::size_t{1} << y, c = std::size_t{1} << z;
+                    const std::size_t half = std::max({x > 0 ? rooms[x - 1][y][z] : 0, y > 0 ? rooms[x][y - 1][z] : 0, z > 0 ? rooms[x][y][z - 1] : 0});
+                    rooms[x][y][z] = a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1) + 2 * kLanes<float> + half;
+                }
+            }
         }
-        return static_cast<std::size_t>(edges(0, 1, 2) + edges(1, 2, 0) + edges(2, 0, 1)) + 2 * kLanes<float> + below;
+        const auto depth = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(block_size)));
+        return rooms[depth][depth][depth];
     }
 
     std::array<Array<float>, 3> places_;

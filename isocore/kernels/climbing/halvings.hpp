@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "climbing/high_rice.hpp"
+#include "common/bit_fields.hpp"
 
 namespace isocore::climbing {
 
@@ -154,7 +155,7 @@ class HalvingsReader {
     }
 
   private:
-    std::uint64_t ahead() const { return words_[at_ / 64] >> at_ % 64 | words_[at_ / 64 + 1] << 1 << (63 - at_ % 64); }
+    std::uint64_t ahead() const { return bits_from(words_, at_); }
 
     const std::uint64_t* words_;
     std::size_t at_ = 0;  // bits

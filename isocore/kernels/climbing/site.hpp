@@ -49,7 +49,7 @@ class Site {
         const std::uint64_t samples = (std::uint64_t{2} << cells[0]) - 1, own = ends_grid[0] ? samples : samples >> 1;
         for_rows([&](int j, int k) {
             const auto [gj, gk] = in_grid(j, k);
-            rows_[row_index(j, k)].signs = samples_from(signs_->row(gj, gk), x) & samples;
+            rows_[row_index(j, k)].signs = signs_->row(gj, gk).from(x) & samples;
         });
         find_crossed_rows(samples);
         for (const Edge& start : crossed_rows()) {

@@ -1,8 +1,10 @@
 // bit_fields.hpp - Some bits of a word, moved close together or back: one instruction where the processor has it.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #if defined(__BMI2__) || (defined(_MSC_VER) && defined(__AVX2__))
 #include <immintrin.h>
@@ -31,6 +33,30 @@ inline std::uint64_t deposit_bits(std::uint64_t bits, std::uint64_t places) {
     for (; places; places &= places - 1, bits >>= 1) out |= places & -places & -(bits & 1);
     return out;
 #endif
+}
+
+// Bytes as words and words as bytes, at any place, the lowest bits first.
+inline std::uint64_t load_bits(const std::uint8_t* bytes) {
+    std::uint64_t word;
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(&word, bytes, sizeof word);
+    } else {
+        word = 0;
+        for (std::size_t n = 0; n < sizeof word; ++n) word |= std::uint64_t{bytes[n]} << 8 * n;
+    }
+    return word;
+}
+inline void store_bits(const std::uint64_t* words, std::uint8_t* bytes, std::size_t count) {
+    if constexpr (std::endian::native == std::endian::little) {
+        std::memcpy(bytes, words, count);
+    } else {
+        for (std::size_t n = 0; n < count; ++n) bytes[n] = static_cast<std::uint8_t>(words[n / 8] >> 8 * (n % 8));
+    }
+}
+
+// A word of those bits of several that start with bit `first`. A word more than these is read.
+inline std::uint64_t bits_from(const std::uint64_t* words, std::size_t first) {
+    return words[first / 64] >> first % 64 | words[first / 64 + 1] << 1 << (63 - first % 64);
 }
 
 // A word of `count` ones, at most 64.

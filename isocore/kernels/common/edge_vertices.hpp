@@ -22,10 +22,10 @@ using RowBase = std::array<std::uint32_t, 3>;
 
 // Crossings of the edges along `axis` that start in word w of row (j, k); 0 where the volume ends.
 inline std::uint64_t crossed_edges(const SignGrid& signs, int axis, std::size_t j, std::size_t k, std::size_t w) {
-    const std::uint64_t* row = signs.row(j, k);
-    if (axis == 0) return (row[w] ^ next_samples(row, w)) & signs.valid(w, 1);
-    if (axis == 1) return j + 1 < signs.dims[1] ? row[w] ^ signs.row(j + 1, k)[w] : 0;
-    return k + 1 < signs.dims[2] ? row[w] ^ signs.row(j, k + 1)[w] : 0;
+    const SignRow row = signs.row(j, k);
+    if (axis == 0) return (row.word(w) ^ row.next_word(w)) & signs.valid(w, 1);
+    if (axis == 1) return j + 1 < signs.dims[1] ? (row.word(w) ^ signs.row(j + 1, k).word(w)) & signs.valid(w) : 0;
+    return k + 1 < signs.dims[2] ? (row.word(w) ^ signs.row(j, k + 1).word(w)) & signs.valid(w) : 0;
 }
 
 // Where an edge into the padding is crossed: next to the volume's own sample. 0 for any other edge.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "common/crossing.hpp"
 #include "common/parallel.hpp"
@@ -87,25 +88,27 @@ template <class Sample>
 SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges) {
     const std::size_t pad = padded ? 1 : 0;
     const Dims dims{samples.dims[0] + 2 * pad, samples.dims[1] + 2 * pad, samples.dims[2] + 2 * pad};
-    SignGrid grid{dims, pad, (dims[0] + 63) / 64, {}};
-    grid.bits.resize(grid.words * dims[1] * dims[2] + 1);
-    grid.bits.back() = 0;
+    SignGrid grid{dims, pad, (dims[0] + 7) / 8, (dims[0] + 63) / 64, {}};
+    grid.bytes.resize(grid.stride * dims[1] * dims[2] + SignGrid::kBeyond);
+    std::fill(grid.bytes.end() - SignGrid::kBeyond, grid.bytes.end(), 0);
     const Inside<Sample> inside(isovalue, below);
-    const std::size_t plane = grid.words * dims[1];
+    const std::size_t plane = grid.stride * dims[1];
     if (inside.nothing) {
-        std::fill(grid.bits.begin(), grid.bits.end(), 0);
+        std::fill(grid.bytes.begin(), grid.bytes.end(), 0);
         return grid;
     }
-    parallel_for(threads, dims[2], [&](std::size_t k) {
-        std::uint64_t* rows = grid.bits.data() + plane * k;
+    const auto make = [&] { return std::vector<std::uint64_t>(grid.words); };
+    parallel_for(threads, dims[2], make, [&](std::vector<std::uint64_t>& row, std::size_t k) {
+        std::uint8_t* rows = grid.bytes.data() + plane * k;
         if (pad) std::fill(rows, rows + plane, 0);
         if (pad && (k == 0 || k + 1 == dims[2])) return;
         for (std::size_t j = 0; j < samples.dims[1]; ++j) {
-            std::uint64_t* row = rows + grid.words * (j + pad);
             const Sample* from = samples.row(j, k - pad);
-            if (ranges) classify_row(from, samples.dims[0], inside, ranges + 2 * range_block(samples.dims, 0, j, k - pad), row);
-            else classify_row(from, samples.dims[0], inside, row);
-            if (pad) shift_by_one(row, grid.words);
+            if (ranges) classify_row(from, samples.dims[0], inside, ranges + 2 * range_block(samples.dims, 0, j, k - pad), row.data());
+            else classify_row(from, samples.dims[0], inside, row.data());
+            if (pad) shift_by_one(row.data(), grid.words);
+            std::uint8_t* const out = rows + grid.stride * (j + pad);
+            store_bits(row.data(), out, grid.stride);
         }
     });
     return grid;

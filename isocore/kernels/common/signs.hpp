@@ -1,7 +1,8 @@
 // signs.hpp - The sign of every sample as one bit: what the marching and climbing kernels really run on.
-// Sample (i, j, k) is bit i % 64 of word i / 64 of row (j, k); bits past the end of a row are 0. A padded grid
-// has one more layer of outside samples on every side, which closes the surface at the border: its sample
-// (i, j, k) is the volume's (i - 1, j - 1, k - 1).
+// Sample (i, j, k) is bit i % 8 of byte i / 8 of row (j, k). Rows are rounded to whole bytes and no more, as signs are most
+// of what a kernel needs beyond the volume and the surface; words of 64 are read from any byte on. A padded grid has one more
+// layer of outside samples on every side, which closes the surface at the border: its sample (i, j, k) is the volume's
+// (i - 1, j - 1, k - 1).
 #pragma once
 
 #include <algorithm>
@@ -14,14 +15,33 @@
 
 namespace isocore {
 
-struct SignGrid {
-    Dims dims;          // samples per axis, padding included
-    std::size_t pad;    // 0 or 1
-    std::size_t words;  // per row
-    Array<std::uint64_t> bits;  // and a word more, so that what follows a row's last word may be read
+// What is beyond the row's last sample tells nothing.
+class SignRow {
+  public:
+    explicit SignRow(const std::uint8_t* bytes) : bytes_(bytes) {}
 
-    const std::uint64_t* row(std::size_t j, std::size_t k) const { return bits.data() + words * (j + dims[1] * k); }
-    bool at(std::size_t i, std::size_t j, std::size_t k) const { return row(j, k)[i / 64] >> (i % 64) & 1; }
+    // 64 samples.
+    std::uint64_t word(std::size_t w) const { return load_bits(bytes_ + 8 * w); }
+    // The same moved by one sample towards 0, so that bit i tells of sample i + 1.
+    std::uint64_t next_word(std::size_t w) const { return word(w) >> 1 | std::uint64_t{bytes_[8 * w + 8]} << 63; }
+    // At least 57 samples from sample i on.
+    std::uint64_t from(std::size_t i) const { return load_bits(bytes_ + i / 8) >> i % 8; }
+    bool at(std::size_t i) const { return bytes_[i / 8] >> i % 8 & 1; }
+
+  private:
+    const std::uint8_t* bytes_;
+};
+
+struct SignGrid {
+    static constexpr std::size_t kBeyond = 16;  // bytes that may be read after the last row
+
+    Dims dims;                   // samples per axis, padding included
+    std::size_t pad;             // 0 or 1
+    std::size_t stride, words;   // per row: bytes, and words if they were rounded to these
+    Array<std::uint8_t> bytes;
+
+    SignRow row(std::size_t j, std::size_t k) const { return SignRow(bytes.data() + stride * (j + dims[1] * k)); }
+    bool at(std::size_t i, std::size_t j, std::size_t k) const { return row(j, k).at(i); }
     // Which bits of word w belong to samples (or, with cells = 1, to cells) of a row.
     std::uint64_t valid(std::size_t w, std::size_t cells = 0) const {
         const std::size_t count = dims[0] - cells, before = std::min(count, 64 * w);
@@ -33,14 +53,5 @@ struct SignGrid {
 // sample_ranges() gave, the samples of blocks that lie on one side are not read.
 template <class Sample>
 SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges = nullptr);
-
-// The row's samples from i on, as far as a word goes. What is beyond the row's last sample tells nothing.
-inline std::uint64_t samples_from(const std::uint64_t* row, std::size_t i) {
-    return row[i / 64] >> i % 64 | row[i / 64 + 1] << 1 << (63 - i % 64);
-}
-
-// The row moved by one sample towards 0, so that bit i tells of sample i + 1. What is beyond the row's last sample tells
-// nothing.
-inline std::uint64_t next_samples(const std::uint64_t* row, std::size_t w) { return row[w] >> 1 | row[w + 1] << 63; }
 
 }  // namespace isocore

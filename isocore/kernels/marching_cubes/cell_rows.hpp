@@ -16,13 +16,13 @@ inline std::uint32_t ones(Word word) { return static_cast<std::uint32_t>(std::po
 
 // The four rows of samples around a row of cells, one word of each, and the same moved on by one sample.
 struct Rows {
-    std::array<const Word*, 4> row;  // (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
+    std::array<SignRow, 4> row;  // (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
 
     Rows(const SignGrid& signs, std::size_t j, std::size_t k)
         : row{signs.row(j, k), signs.row(j + 1, k), signs.row(j, k + 1), signs.row(j + 1, k + 1)} {}
 
-    Word here(int n, std::size_t w) const { return row[static_cast<std::size_t>(n)][w]; }
-    Word next(int n, std::size_t w) const { return next_samples(row[static_cast<std::size_t>(n)], w); }
+    Word here(int n, std::size_t w) const { return row[static_cast<std::size_t>(n)].word(w); }
+    Word next(int n, std::size_t w) const { return row[static_cast<std::size_t>(n)].next_word(w); }
     Word active(std::size_t w, Word valid) const {
         Word any = 0, all = ~Word{0};
         for (int n = 0; n < 4; ++n) {

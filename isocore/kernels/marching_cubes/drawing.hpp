@@ -37,15 +37,15 @@ class Drawer {
         std::array<std::uint32_t, 8> base{bases_[row][0],   bases_[row + 1][0], bases_[above][0], bases_[above + 1][0],
                                           bases_[row][1],   bases_[above][1],   bases_[row][2],   bases_[row + 1][2]};
         for (std::size_t w = 0; w < signs_.words; ++w) {
-            const Word valid = signs_.valid(w, 1);
+            const Word valid = signs_.valid(w, 1), in_row = signs_.valid(w);
             std::array<Word, 4> here, next;
             for (int n = 0; n < 4; ++n) {
                 here[static_cast<std::size_t>(n)] = rows.here(n, w);
                 next[static_cast<std::size_t>(n)] = rows.next(n, w);
             }
-            const std::array<Word, 8> crossed{(here[0] ^ next[0]) & valid, (here[1] ^ next[1]) & valid, (here[2] ^ next[2]) & valid,
-                                              (here[3] ^ next[3]) & valid, here[0] ^ here[1],           here[2] ^ here[3],
-                                              here[0] ^ here[2],           here[1] ^ here[3]};
+            const std::array<Word, 8> crossed{(here[0] ^ next[0]) & valid,  (here[1] ^ next[1]) & valid,  (here[2] ^ next[2]) & valid,
+                                              (here[3] ^ next[3]) & valid,  (here[0] ^ here[1]) & in_row, (here[2] ^ here[3]) & in_row,
+                                              (here[0] ^ here[2]) & in_row, (here[1] ^ here[3]) & in_row};
             for (Word left = rows.active(w, valid); left != 0; left &= left - 1) {
                 const int x = std::countr_zero(left);
                 unsigned corners = 0;
