@@ -3,6 +3,8 @@
 
 void test_bits();
 void test_crossing();
+void test_signs();
+void test_halvings();
 void test_facets();
 void test_cell_loops();
 void test_climbing();
@@ -13,6 +15,8 @@ void test_thinning();
 int main() {
     test_bits();
     test_crossing();
+    test_signs();
+    test_halvings();
     test_facets();
     test_cell_loops();
     test_climbing();

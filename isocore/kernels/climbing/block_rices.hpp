@@ -42,17 +42,20 @@ class BlockRices {
     // Those of several cells.
     std::span<const Piece> boxes() const { return {boxes_.data(), size_}; }
 
+    // Single cells of a row that are no part of a box, a bit each; some may hold nothing.
+    std::uint32_t cells(int j, int k) const { return cells_[static_cast<std::size_t>(j + block_size_ * k)]; }
+
     // Calls visit(j, k, cells) for every row of the block with highrices of one cell, a bit each.
     template <class Visit>
     void visit_cells(const Site& site, const Visit& visit) const {
         for (int k = 0; k < site.cells[2]; ++k) {
             for (int j = 0; j < site.cells[1]; ++j) {
-                const std::uint32_t cells = cells_[static_cast<std::size_t>(j + block_size_ * k)];
-                if (cells == 0) continue;
+                const std::uint32_t single = cells(j, k);
+                if (single == 0) continue;
                 const std::uint64_t a = site.row(j, k).signs, b = site.row(j + 1, k).signs, c = site.row(j, k + 1).signs, d = site.row(j + 1, k + 1).signs;
                 const std::uint64_t any = a | b | c | d, all = a & b & c & d;
                 const std::uint64_t inside = (std::uint64_t{1} << site.cells[0]) - 1;
-                if (const std::uint64_t crossed = cells & inside & (any | any >> 1) & ~(all & all >> 1)) visit(j, k, crossed);
+                if (const std::uint64_t crossed = single & inside & (any | any >> 1) & ~(all & all >> 1)) visit(j, k, crossed);
             }
         }
     }

@@ -83,7 +83,7 @@ class Climb {
           options_(options),
           signs_(classify(samples, options.isovalue, options.below, options.capped, options.threads, ranges)),
           bars_(lay_out_bars(signs_, options.block_size)),
-          layout_(signs_, options.threads) {}
+          layout_(signs_, options.block_size, options.threads) {}
 
     void partition() {
         const Gatherer<Sample> gatherer(samples_, signs_, options_);
@@ -98,16 +98,18 @@ class Climb {
         mesh_.vertices.reserve(3 * (vertices + vertices / kLateShare));
         mesh_.vertices.resize(3 * vertices);
         parallel_for(options_.threads, planes, [&](std::size_t k) {
-            for (std::size_t j = 0; j < rows; ++j) {
-                if (layout_.vertices_in(j, k) == 0) continue;
-                std::size_t crossing = layout_.first_crossing(j, k);
-                write_row_vertices(samples_, signs_, options_.isovalue, j, k, mesh_.vertices.data() + 3 * layout_.vertex(crossing),
-                                   [&](auto axis, std::size_t w) {
-                                       const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
-                                       const std::size_t first = crossing;
-                                       crossing += static_cast<std::size_t>(std::popcount(crossed));
-                                       return layout_.kept(crossed, first);
-                                   });
+            for (std::size_t start = 0; start < rows; start += layout_.strip) {
+                if (layout_.vertices_in(start, k) == 0) continue;
+                std::size_t crossing = layout_.first_crossing(start, k);
+                Coordinate* out = mesh_.vertices.data() + 3 * layout_.vertex(crossing);
+                for (std::size_t j = start; j < std::min(start + layout_.strip, rows); ++j) {
+                    out = write_row_vertices(samples_, signs_, options_.isovalue, j, k, out, [&](auto axis, std::size_t w) {
+                        const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
+                        const std::size_t first = crossing;
+                        crossing += static_cast<std::size_t>(std::popcount(crossed));
+                        return layout_.kept(crossed, first);
+                    });
+                }
             }
         });
     }

@@ -74,21 +74,25 @@ class Clouds {
     }
 
   private:
-    // For a block whose edges are all crossed, and for one half after the other, however it is halved.
+    // For all crossings of a block whose edges are all crossed, for the block as the first box, and for one half after the
+    // other, however it is halved.
     static std::size_t room(int block_size) {
         constexpr std::size_t kMost = 6;  // lengths are 1, 2, 4, ... 32
+        const auto edges = [](std::size_t a, std::size_t b, std::size_t c) {
+            return a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1) + 2 * kLanes<float>;
+        };
         std::array<std::array<std::array<std::size_t, kMost>, kMost>, kMost> rooms;
         for (std::size_t x = 0; x < kMost; ++x) {
             for (std::size_t y = 0; y < kMost; ++y) {
                 for (std::size_t z = 0; z < kMost; ++z) {
-                    const std::size_t a = std::size_t{1} << x, b = std::size_t{1} << y, c = std::size_t{1} << z;
                     const std::size_t half = std::max({x > 0 ? rooms[x - 1][y][z] : 0, y > 0 ? rooms[x][y - 1][z] : 0, z > 0 ? rooms[x][y][z - 1] : 0});
-                    rooms[x][y][z] = a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1) + 2 * kLanes<float> + half;
+                    rooms[x][y][z] = edges(std::size_t{1} << x, std::size_t{1} << y, std::size_t{1} << z) + half;
                 }
             }
         }
         const auto depth = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(block_size)));
-        return rooms[depth][depth][depth];
+        const auto size = static_cast<std::size_t>(block_size);
+        return edges(size, size, size) + rooms[depth][depth][depth];
     }
 
     std::array<Array<float>, 3> places_;

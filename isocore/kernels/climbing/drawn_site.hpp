@@ -29,12 +29,8 @@ class DrawnSite : public Site {
     void begin(const SignGrid& signs, const Layout& layout, std::size_t y, std::size_t z) {
         Site::begin(signs, layout, y, z);
         for_rows([&](int j, int k) {
-            const auto [gj, gk] = in_grid(j, k);
-            const auto counts = count_crossings(signs, gj, gk);
-            std::size_t crossing = layout.first_crossing(gj, gk);
-            for (std::size_t axis = 0; axis < 3; crossing += counts[axis++]) {
-                next_vertices_[row_index(j, k)][axis] = static_cast<std::uint32_t>(layout.vertex(crossing));
-            }
+            const std::size_t row = row_index(j, k);
+            for (std::size_t axis = 0; axis < 3; ++axis) next_vertices_[row][axis] = static_cast<std::uint32_t>(layout.vertex(next_crossings_[row][axis]));
         });
     }
 

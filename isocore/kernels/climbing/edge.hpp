@@ -24,13 +24,22 @@ class Edge {
     int at(std::size_t a) const { return static_cast<int>(word_ >> 8 * a & 255); }
     Place at() const { return {at(0), at(1), at(2)}; }
 
+    // The ends of a box, to be compared with.
+    class Ends {
+      public:
+        explicit Ends(const HighRice& box) : low_(word(box.low)), high_(word(box.high)) {}
+
+      private:
+        friend class Edge;
+        static std::uint32_t word(const std::array<std::uint8_t, 3>& end) { return end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16; }
+        std::uint32_t low_, high_;
+    };
     // The faces of a box that it lies on, a bit each.
-    unsigned faces(const HighRice& box) const {
-        const auto equal = [&](const std::array<std::uint8_t, 3>& end) {  // a bit above each byte, none of which exceeds 127
-            const std::uint32_t off = (word_ ^ (end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16)) & 0x7f7f7f;
-            return ~(off + 0x7f7f7f) & 0x808080;
+    unsigned faces(const Ends& box) const {
+        const auto equal = [&](std::uint32_t end) {  // a bit above each byte, none of which exceeds 127
+            return ~(((word_ ^ end) & 0x7f7f7f) + 0x7f7f7f) & 0x808080;
         };
-        const std::uint32_t pairs = equal(box.low) >> 7 | equal(box.high) >> 6;
+        const std::uint32_t pairs = equal(box.low_) >> 7 | equal(box.high_) >> 6;
         return (pairs | pairs >> 6 | pairs >> 12) & 63 & ~(3u << 2 * axis());
     }
 

@@ -21,12 +21,13 @@ namespace isocore::climbing {
 class EdgeLoop {
   public:
     // Finds the order of the kept edges of a disk box that turns its triangles outwards.
-    void arrange(std::span<const Edge> kept, const HighRice box, unsigned corners) {
+    void arrange(std::span<const Edge> kept, const HighRice& box, unsigned corners) {
         const Rim& rim = kRims[corners];
         const auto& stops = kStops[corners];
+        const Edge::Ends ends(box);
         unsigned visited = 0;  // stops
         for (std::size_t n = 0; n < kept.size(); ++n) {
-            const auto faces = static_cast<std::uint8_t>(kept[n].faces(box));
+            const auto faces = static_cast<std::uint8_t>(kept[n].faces(ends));
             const std::uint8_t stop = stops[kPartOfSurface[faces]];
             faces_[n] = faces;
             stops_[n] = stop;

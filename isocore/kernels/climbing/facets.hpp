@@ -16,7 +16,7 @@ namespace isocore::climbing {
 class Facets {
   public:
     using Numbers = Lanes<float>;
-    static constexpr std::size_t kRoom = 1024;
+    static constexpr std::size_t kRoom = 512;
 
     std::size_t size() const { return size_; }
     void clear() { size_ = 0; }

@@ -15,13 +15,13 @@
 namespace isocore::climbing {
 
 // What halving a block leads to, down to single cells; it may reach past the volume's end. In one word: a byte for each low
-// end and for half of each length, a bit for each axis along which it can be halved, and how often that can be done.
+// end and for each length, a bit for each axis along which it can be halved, and how often that can be done.
 class Piece {
   public:
     Piece() = default;
     static Piece block(int size) {
-        const auto half = static_cast<std::uint64_t>(size / 2), depth = static_cast<std::uint64_t>(std::countr_zero(static_cast<unsigned>(size)));
-        return Piece((half | half << 8 | half << 16) << kHalves | std::uint64_t{size > 1 ? 7u : 0u} << kAxes | 3 * depth << kDepth);
+        const auto length = static_cast<std::uint64_t>(size), depth = static_cast<std::uint64_t>(std::countr_zero(length));
+        return Piece((length | length << 8 | length << 16) << kLengths | std::uint64_t{size > 1 ? 7u : 0u} << kAxes | 3 * depth << kDepth);
     }
 
     int low(unsigned axis) const { return static_cast<int>(word_ >> 8 * axis & 255); }
@@ -34,17 +34,17 @@ class Piece {
 
     // Without what is past the volume's end; `cells`: of the block.
     HighRice within(const std::array<int, 3>& cells) const {
+        const std::uint64_t highs = word_ + (word_ >> kLengths);  // in the lowest three bytes
         HighRice box;
         for (unsigned a = 0; a < 3; ++a) {
-            const int length = std::max(2 * static_cast<int>(word_ >> (kHalves + 8 * a) & 255), 1);
             box.low[a] = static_cast<std::uint8_t>(std::min(low(a), cells[a]));
-            box.high[a] = static_cast<std::uint8_t>(std::min(low(a) + length, cells[a]));
+            box.high[a] = static_cast<std::uint8_t>(std::min(static_cast<int>(highs >> 8 * a & 255), cells[a]));
         }
         return box;
     }
 
   private:
-    static constexpr unsigned kHalves = 24, kAxes = 48, kDepth = 51;
+    static constexpr unsigned kLengths = 24, kAxes = 48, kDepth = 51;
     explicit Piece(std::uint64_t word) : word_(word) {}
 
     std::uint64_t word_;
@@ -56,8 +56,8 @@ struct Piece::Halves {
 
 inline Piece::Halves Piece::halves(unsigned axis) const {
     const unsigned byte = 8 * axis;
-    const std::uint64_t half = word_ >> (kHalves + byte) & 255, is_last = half & 1;  // all lengths are powers of two
-    const std::uint64_t lower = word_ - ((half - half / 2) << (kHalves + byte)) - (is_last << (kAxes + axis)) - (std::uint64_t{1} << kDepth);
+    const std::uint64_t half = (word_ >> (kLengths + byte) & 255) / 2, is_last = half & 1;  // all lengths are powers of two
+    const std::uint64_t lower = word_ - (half << (kLengths + byte)) - (is_last << (kAxes + axis)) - (std::uint64_t{1} << kDepth);
     return {Piece(lower), Piece(lower + (half << byte))};
 }
 

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <mutex>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "common/array.hpp"
@@ -22,20 +21,22 @@ class InOrder {
     void put(std::size_t n, std::span<const std::int32_t> part) {
         const std::lock_guard<std::mutex> lock(guard_);
         if (n == next_) append(part);
-        else early_[n].triangles.insert(early_[n].triangles.end(), part.begin(), part.end());
+        else early_[n].parts.emplace_back(part.begin(), part.end());
     }
     // The end of bar n, each once.
     void end(std::size_t n) {
         const std::lock_guard<std::mutex> lock(guard_);
         early_[n].is_ended = true;
         while (next_ < early_.size() && early_[next_].is_ended) {
-            if (++next_ < early_.size()) append(std::exchange(early_[next_].triangles, {}));
+            if (++next_ == early_.size()) return;
+            for (const auto& part : early_[next_].parts) append(part);
+            early_[next_].parts = {};
         }
     }
 
   private:
     struct Early {
-        std::vector<std::int32_t> triangles;
+        std::vector<std::vector<std::int32_t>> parts;
         bool is_ended = false;
     };
 

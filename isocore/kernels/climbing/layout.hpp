@@ -3,6 +3,8 @@
 // box is a vertex of the mesh. One bit per crossing, in the order of edge_vertices.hpp, is all that this takes.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cstddef>
@@ -32,11 +34,17 @@ inline std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::
 
 class Layout {
   public:
-    Layout(const SignGrid& signs, int threads) : rows_(signs.dims[1]), first_crossing_(rows_ * signs.dims[2] + 1) {
+    const std::size_t strip;  // so many rows at most are numbered together; blocks start with a strip
+
+    Layout(const SignGrid& signs, int block_size, int threads)
+        : strip(std::min<std::size_t>(8, static_cast<std::size_t>(block_size))),
+          strips_((signs.dims[1] - 1) / strip + 1),
+          first_crossing_(strips_ * signs.dims[2] + 1) {
         parallel_for(threads, signs.dims[2], [&](std::size_t k) {
-            for (std::size_t j = 0; j < rows_; ++j) {
+            std::fill_n(first_crossing_.begin() + static_cast<std::ptrdiff_t>(strips_ * k), strips_, 0);
+            for (std::size_t j = 0; j < signs.dims[1]; ++j) {
                 const auto counts = count_crossings(signs, j, k);
-                first_crossing_[row(j, k)] = counts[0] + counts[1] + counts[2];
+                first_crossing_[strips_ * k + j / strip] += counts[0] + counts[1] + counts[2];
             }
         });
         crossings_ = add_up(first_crossing_, std::numeric_limits<std::uint32_t>::max());
@@ -45,8 +53,10 @@ class Layout {
     }
 
     std::size_t crossings() const { return crossings_; }
-    std::uint32_t first_crossing(std::size_t j, std::size_t k) const { return first_crossing_[row(j, k)]; }
-    std::size_t vertices_in(std::size_t j, std::size_t k) const { return count(first_crossing(j, k), first_crossing_[row(j, k) + 1]); }
+    // The number of the first crossing of row (j, k), with which a strip starts.
+    std::uint32_t first_crossing(std::size_t j, std::size_t k) const { return first_crossing_[strips_ * k + j / strip]; }
+    // Those that are kept in that row's strip.
+    std::size_t vertices_in(std::size_t j, std::size_t k) const { return count(first_crossing(j, k), first_crossing_[strips_ * k + j / strip + 1]); }
 
     // Keeps a crossing, from any thread. False if it was kept before.
     bool keep(std::size_t crossing) {
@@ -93,8 +103,6 @@ class Layout {
         if (bits & ~kept_[word].load(std::memory_order_relaxed)) kept_[word].fetch_or(bits, std::memory_order_relaxed);
     }
     static std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
-    std::size_t row(std::size_t j, std::size_t k) const { return j + rows_ * k; }
-
     // Turns counts into the sums of those before; the last one becomes the sum of all.
     static std::size_t add_up(Array<std::uint32_t>& counts, std::size_t limit) {
         std::size_t sum = 0;
@@ -110,8 +118,8 @@ class Layout {
 
     static constexpr std::size_t kGroup = 512;  // crossings
 
-    std::size_t rows_, crossings_ = 0;
-    Array<std::uint32_t> first_crossing_;            // by row, and one more
+    std::size_t strips_, crossings_ = 0;             // strips of a plane
+    Array<std::uint32_t> first_crossing_;            // by strip, and one more
     std::vector<std::atomic<std::uint64_t>> kept_;   // a bit per crossing
     Array<std::uint32_t> vertices_before_;           // those before each group of crossings, and one more
 };

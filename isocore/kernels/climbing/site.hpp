@@ -35,11 +35,13 @@ class Site {
         layout_ = &layout;
         origin = {0, y, z};
         for (std::size_t a = 1; a < 3; ++a) set_size(a);
+        std::uint32_t crossing = 0;
         for_rows([&](int j, int k) {
             const auto [gj, gk] = in_grid(j, k);
+            if (j == 0) crossing = layout.first_crossing(gj, gk);
             const auto counts = count_crossings(signs, gj, gk);
-            const std::uint32_t first = layout.first_crossing(gj, gk);
-            next_crossings_[row_index(j, k)] = {first, first + counts[0], first + counts[0] + counts[1]};
+            next_crossings_[row_index(j, k)] = {crossing, crossing + counts[0], crossing + counts[0] + counts[1]};
+            crossing += counts[0] + counts[1] + counts[2];
         });
     }
 
@@ -106,6 +108,7 @@ class Site {
 
     const SignGrid* signs_ = nullptr;
     const Layout* layout_ = nullptr;
+    std::array<std::array<std::uint32_t, 3>, kRows> next_crossings_;  // of each row: what comes after the blocks that were loaded
 
   private:
     void set_size(std::size_t axis) {
@@ -131,7 +134,6 @@ class Site {
 
     int stride_;
     std::array<Row, kRows> rows_;
-    std::array<std::array<std::uint32_t, 3>, kRows> next_crossings_;  // what comes after the blocks that were loaded
     std::array<Edge, 3 * kRows + 1> crossed_rows_;                    // and room for one that is not
     std::size_t crossed_size_ = 0;
 };

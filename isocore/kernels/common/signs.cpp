@@ -76,8 +76,9 @@ void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>
     }
 }
 
-// Make room for the layer of outside samples before the row.
-void shift_by_one(std::uint64_t* row, std::size_t words) {
+// Make room for the layer of outside samples before the row, and one after it.
+void shift_by_one(std::uint64_t* row, std::size_t samples, std::size_t words) {
+    for (std::size_t w = (samples + 63) / 64; w < words; ++w) row[w] = 0;
     for (std::size_t w = words; w-- > 1;) row[w] = row[w] << 1 | row[w - 1] >> 63;
     row[0] <<= 1;
 }
@@ -106,7 +107,7 @@ SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool pa
             const Sample* from = samples.row(j, k - pad);
             if (ranges) classify_row(from, samples.dims[0], inside, ranges + 2 * range_block(samples.dims, 0, j, k - pad), row.data());
             else classify_row(from, samples.dims[0], inside, row.data());
-            if (pad) shift_by_one(row.data(), grid.words);
+            if (pad) shift_by_one(row.data(), samples.dims[0], grid.words);
             std::uint8_t* const out = rows + grid.stride * (j + pad);
             store_bits(row.data(), out, grid.stride);
         }
