@@ -56,9 +56,8 @@ double crossing(Sample a, Sample b, double isovalue) {
         if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
     }
     const double fa = static_cast<double>(a), fb = static_cast<double>(b);
-    const double t = (isovalue - fa) / (fb - fa);
-    if (!(t > kClamp)) return kClamp;
-    return t < 1 - kClamp ? t : 1 - kClamp;
+    const double t = (isovalue - fa) / (fb - fa), above = t > kClamp ? t : kClamp;  // no branch: none could be guessed
+    return above < 1 - kClamp ? above : 1 - kClamp;
 }
 
 // The asymptotic decider (Nielson, Hamann 1991) on a face whose diagonal corners `in0`, `in1` are inside and

@@ -71,10 +71,11 @@ Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, d
 template <class Sample, class Coordinate>
 Coordinate* write_vertex(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
                          std::size_t k, Coordinate* out) {
-    const double pad = static_cast<double>(signs.pad);
-    double place[3] = {static_cast<double>(i) - pad, static_cast<double>(j) - pad, static_cast<double>(k) - pad};
-    place[axis] += edge_crossing(samples, signs, isovalue, axis, i, j, k);
-    for (int a = 0; a < 3; ++a) *out++ = static_cast<Coordinate>(place[a]);
+    const double pad = static_cast<double>(signs.pad), share = edge_crossing(samples, signs, isovalue, axis, i, j, k);
+    const std::array<std::size_t, 3> at{i, j, k};
+    for (int a = 0; a < 3; ++a) {
+        *out++ = static_cast<Coordinate>(static_cast<double>(at[static_cast<std::size_t>(a)]) - pad + (a == axis ? share : 0.0));
+    }
     return out;
 }
 
