@@ -41,9 +41,9 @@ kernels: $(READY)  ## the kernels' own tests, under sanitizers
 	$(BIN)/ninja -C build/kernels
 	build/kernels/kernel_tests
 
-bench: $(READY)  ## time us against the peers, in one process
+bench: $(READY)  ## time us against the peers, in one process; and the memory
 	$(BIN)/python -m pip install -q ".[bench]" --no-build-isolation --no-deps && $(BIN)/python -m pip install -q vtk scikit-image nilearn
-	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py
+	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py && $(BIN)/python tests/bench/memory.py
 
 samples: $(READY)  ## make sample_volumes/ again
 	$(BIN)/python sample_volumes/make.py
