@@ -41,9 +41,9 @@ def main() -> None:
                 return measure(surface, threads).triangles
 
             timed = take_turns({"extract": ours(volume, stored, "mc", threads), "measure": run}, rounds)
-            (extract, triangles), (seconds, _) = timed["extract"], timed["measure"]
-            row = f"{name:14}{threads:>8}{triangles:>12,}{1e3 * extract:>12.1f}{1e3 * seconds:>12.1f}"
-            print(f"{row}{seconds / extract:>8.2f}")
+            extract, own = timed["extract"], timed["measure"]
+            row = f"{name:14}{threads:>8}{own.triangles:>12,}{1e3 * extract.seconds:>12.1f}{1e3 * own.seconds:>12.1f}"
+            print(f"{row}{own.ratio(extract):>8.2f}")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Time isocore against its peers, in one process on the same samples: `make bench`.
 
-Every figure is the median of several runs after one warm-up; peers and we take turns, so that a ratio holds when the
-machine's speed drifts. Writes bench.json with the commit, the compiler and the machine.
+Every figure is the median of several runs after one warm-up. Peers and we take turns, and a ratio is the median of
+those of each turn, so that it holds when the machine's speed drifts. Writes bench.json with the commit and the machine.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -95,8 +96,25 @@ def scikit_image(volume: Volume, stored: float) -> Run:
     return lambda: len(marching_cubes(volume.samples, stored)[1])
 
 
-def take_turns(runs: dict[str, Run], rounds: int) -> dict[str, tuple[float, int]]:
-    """Median seconds and triangles of each, run in turn."""
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """How long each run took, and what came of it."""
+
+    rounds: list[float]
+    triangles: int
+
+    @property
+    def seconds(self) -> float:
+        """The median."""
+        return statistics.median(self.rounds)
+
+    def ratio(self, peer: Timed) -> float:
+        """The median of the ratios to a peer's runs of the same rounds."""
+        return statistics.median(own / other for own, other in zip(self.rounds, peer.rounds, strict=True))
+
+
+def take_turns(runs: dict[str, Run], rounds: int) -> dict[str, Timed]:
+    """Run each in turn, after one warm-up."""
     seconds: dict[str, list[float]] = {name: [] for name in runs}
     triangles = {name: run() for name, run in runs.items()}
     for _ in range(rounds):
@@ -104,7 +122,7 @@ def take_turns(runs: dict[str, Run], rounds: int) -> dict[str, tuple[float, int]
             start = time.perf_counter()
             run()
             seconds[name].append(time.perf_counter() - start)
-    return {name: (statistics.median(seconds[name]), triangles[name]) for name in runs}
+    return {name: Timed(seconds[name], triangles[name]) for name in runs}
 
 
 def machine() -> dict[str, str]:
@@ -141,12 +159,11 @@ def main() -> None:
             if threads == 1 and not arguments.no_scikit_image:
                 runs["scikit-image"] = scikit_image(volume, stored)
             timed = take_turns(runs, arguments.rounds)
-            reference = timed["VTK Flying Edges"][0]
-            for method, (seconds, triangles) in timed.items():
-                ratio = seconds / reference
-                print(f"{name:14}{threads:>8}  {method:22}{triangles:>12,}{1e3 * seconds:>10.1f}{ratio:>16.2f}")
-                row = {"volume": name, "threads": threads, "method": method, "triangles": triangles}
-                rows.append({**row, "seconds": seconds, "ratio": ratio})
+            for method, own in timed.items():
+                ratio = own.ratio(timed["VTK Flying Edges"])
+                print(f"{name:14}{threads:>8}  {method:22}{own.triangles:>12,}{1e3 * own.seconds:>10.1f}{ratio:>16.2f}")
+                row = {"volume": name, "threads": threads, "method": method, "triangles": own.triangles}
+                rows.append({**row, "seconds": own.seconds, "ratio": ratio})
     (ROOT / "bench.json").write_text(json.dumps({**machine(), "rows": rows}, indent=1) + "\n")
 
 
