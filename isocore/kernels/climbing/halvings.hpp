@@ -1,5 +1,5 @@
-// halvings.hpp - How the blocks of a bar were halved down to highrices, in four or five bits a halving: boxes would take four
-// bytes each.
+// halvings.hpp - How the blocks of a bar were halved down to highrices, in three to five bits a halving: boxes would take
+// four bytes each.
 #pragma once
 
 #include <algorithm>
@@ -81,7 +81,7 @@ struct HalvingCode {
         Halving halving;
         std::uint8_t length = 0;
     };
-    std::array<std::array<Word, 4>, 8> of_axes{};                  // by the axes to choose from, and the one chosen
+    std::array<std::array<Word, 4>, 8> of_axes{};               // by the axes to choose from, and the one chosen
     std::array<std::array<Entry, 1 << kLongest>, 8> entries{};  // by the axes to choose from, and the next bits
 
     constexpr HalvingCode() {

@@ -103,6 +103,7 @@ class Layout {
         if (bits & ~kept_[word].load(std::memory_order_relaxed)) kept_[word].fetch_or(bits, std::memory_order_relaxed);
     }
     static std::uint32_t ones(std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); }
+
     // Turns counts into the sums of those before; the last one becomes the sum of all.
     static std::size_t add_up(Array<std::uint32_t>& counts, std::size_t limit) {
         std::size_t sum = 0;
@@ -118,10 +119,10 @@ class Layout {
 
     static constexpr std::size_t kGroup = 512;  // crossings
 
-    std::size_t strips_, crossings_ = 0;             // strips of a plane
-    Array<std::uint32_t> first_crossing_;            // by strip, and one more
-    std::vector<std::atomic<std::uint64_t>> kept_;   // a bit per crossing
-    Array<std::uint32_t> vertices_before_;           // those before each group of crossings, and one more
+    std::size_t strips_, crossings_ = 0;            // strips of a plane
+    Array<std::uint32_t> first_crossing_;           // by strip, and one more
+    std::vector<std::atomic<std::uint64_t>> kept_;  // a bit per crossing
+    Array<std::uint32_t> vertices_before_;          // those before each group of crossings, and one more
 };
 
 }  // namespace isocore::climbing

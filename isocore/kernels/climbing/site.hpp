@@ -134,7 +134,7 @@ class Site {
 
     int stride_;
     std::array<Row, kRows> rows_;
-    std::array<Edge, 3 * kRows + 1> crossed_rows_;                    // and room for one that is not
+    std::array<Edge, 3 * kRows + 1> crossed_rows_;  // and room for one that is not
     std::size_t crossed_size_ = 0;
 };
 
