@@ -6,6 +6,7 @@ void test_crossing();
 void test_signs();
 void test_halvings();
 void test_facets();
+void test_polygons();
 void test_cell_loops();
 void test_climbing();
 void test_marching_cubes();
@@ -18,6 +19,7 @@ int main() {
     test_signs();
     test_halvings();
     test_facets();
+    test_polygons();
     test_cell_loops();
     test_climbing();
     test_marching_cubes();

@@ -43,11 +43,11 @@ class Gatherer final : public Judge {
             Edge start;
             Ligns::Row ligns;
         };
-        SetBits<Row, 64> found;
-        Spotter<Sample> spotter(samples_, signs_, isovalue_);
-        ligns.clear(site.samples());
-        std::array<std::uint32_t, Spotter<Sample>::kRoom> edges;
-        static_assert(edges.size() >= 64 * 33);
+        constexpr std::size_t kRowsAtOnce = 24, kRoom = 33 * kRowsAtOnce;
+        SetBits<Row, kRowsAtOnce> found;
+        Spotter<Sample, kRoom> spotter(samples_, signs_, isovalue_);
+        ligns.clear();
+        std::array<std::uint32_t, kRoom> edges;
         const auto add = [&] {
             std::size_t size = 0;
             found.visit([&](const Row& row, int i) {
@@ -121,8 +121,17 @@ class Climb {
         std::size_t most = 4 * (mesh_.vertices.size() / 3);
         for (const Bar& bar : bars_.bars) most -= 2 * bar.highrices;
         mesh_.triangles.resize(3 * most);
-        InOrder triangles(bars_.bars.size(), mesh_.triangles);
-        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { triangles.put(n, part); }, [&](std::size_t n) { triangles.end(n); });
+        InOrder triangles(bars_.bars.size(), most_early(), mesh_.triangles);
+        draw_stale([&](std::size_t n, const auto& draw_bar) {
+            try {
+                triangles.begin(n);
+                draw_bar([&](std::span<const std::int32_t> part) { triangles.put(n, part); });
+                triangles.end(n);
+            } catch (...) {
+                triangles.give_up();
+                throw;
+            }
+        });
         mesh_.triangles.resize(3 * place_bars(bars_));
     }
 
@@ -138,7 +147,9 @@ class Climb {
         for (std::size_t n = 0; n < redrawn.size(); ++n) {
             if (bars_.bars[n].stale) redrawn[n].emplace();
         }
-        draw_stale([&](std::size_t n, std::span<const std::int32_t> part) { redrawn[n]->insert(redrawn[n]->end(), part.begin(), part.end()); }, [](std::size_t) {});
+        draw_stale([&](std::size_t n, const auto& draw_bar) {
+            draw_bar([&](std::span<const std::int32_t> part) { redrawn[n]->insert(redrawn[n]->end(), part.begin(), part.end()); });
+        });
         const std::size_t size = 3 * place_bars(bars_);
         mesh_.triangles.resize(std::max(mesh_.triangles.size(), size));
         move_triangles(before, redrawn, bars_, mesh_.triangles);
@@ -167,19 +178,23 @@ class Climb {
         });
     }
 
+    // Numbers that may be kept aside: little beside the samples, but enough for all threads to be at work.
+    std::size_t most_early() const {
+        const std::size_t samples = samples_.dims[0] * samples_.dims[1] * samples_.dims[2];
+        return std::max<std::size_t>(samples / 512, 8192 * static_cast<std::size_t>(std::max(options_.threads, 1)));
+    }
+
     // Room is left for so large a share of vertices that late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
-    // Calls put(number, some triangles), then end(number), for each bar that is stale, from any thread.
-    template <class Put, class End>
-    void draw_stale(const Put& put, const End& end) {
+    // Calls visit(number, draw_bar) for each bar that is stale, from any thread; draw_bar(put) draws it and calls put(triangles)
+    // for some after the other.
+    template <class Visit>
+    void draw_stale(const Visit& visit) {
         using AnyDrawer = Drawer<Sample, Coordinate>;
         const auto make = [&] { return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data()); };
         parallel_for(options_.threads, bars_.bars.size(), make, [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
-            Bar& bar = bars_.bars[n];
-            if (!bar.stale) return;
-            drawer->draw(bars_, n, bar, [&](std::span<const std::int32_t> part) { put(n, part); });
-            end(n);
+            if (bars_.bars[n].stale) visit(n, [&](const auto& put) { drawer->draw(bars_, n, bars_.bars[n], put); });
         });
     }
 

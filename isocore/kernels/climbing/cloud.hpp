@@ -38,21 +38,27 @@ class Clouds {
   public:
     // Room for as many as any block of that size can need is made once: pushing must never move what lies below. Most of it
     // is never touched, and so takes no memory.
-    explicit Clouds(int block_size) {
-        for (auto& axis : places_) axis.resize(room(block_size));
+    explicit Clouds(int block_size) : block_size_(block_size) { numbers_.resize(3 * room(std::numeric_limits<std::size_t>::max())); }
+    // Goes to a block with so many crossings.
+    void begin(std::size_t crossings) {
+        start_ = top_ = 0;
+        if (crossings < planned_) return;
+        constexpr std::size_t kStep = 512;
+        planned_ = (crossings / kStep + 1) * kStep;
+        const std::size_t each = room(planned_);
+        for (std::size_t a = 0; a < 3; ++a) places_[a] = numbers_.data() + a * each;
     }
-    void clear() { start_ = top_ = 0; }
     // Adds the first `count` lanes.
     void add(const Vector<Numbers>& spots, std::size_t count) {
-        for (std::size_t a = 0; a < 3; ++a) spots[a].store(places_[a].data() + top_);
+        for (std::size_t a = 0; a < 3; ++a) spots[a].store(places_[a] + top_);
         top_ += count;
     }
     // Ends the cloud that was added since the last one.
     Cloud finish() {
         Cloud out;
         out.size = top_ - start_;
-        for (std::size_t a = 0; a < 3; ++a) out.axes[a] = places_[a].data() + start_;
-        for (auto& axis : places_) Numbers(std::numeric_limits<float>::infinity()).store(axis.data() + top_);
+        for (std::size_t a = 0; a < 3; ++a) out.axes[a] = places_[a] + start_;
+        for (float* axis : places_) Numbers(std::numeric_limits<float>::infinity()).store(axis + top_);
         out.lanes = (out.size + kLanes<float> - 1) / kLanes<float> * kLanes<float>;
         start_ = top_ = start_ + out.lanes;
         return out;
@@ -65,37 +71,38 @@ class Clouds {
         for (std::size_t n = 0; n < from.lanes; n += kLanes<float>) {
             const Numbers x(from.axes[0] + n), y(from.axes[1] + n), z(from.axes[2] + n);
             const unsigned here = within(box, x, y, z).bits();
-            x.pack(here, places_[0].data() + top_);
-            y.pack(here, places_[1].data() + top_);
-            z.pack(here, places_[2].data() + top_);
+            x.pack(here, places_[0] + top_);
+            y.pack(here, places_[1] + top_);
+            z.pack(here, places_[2] + top_);
             top_ += static_cast<std::size_t>(std::popcount(here));
         }
         return finish();
     }
 
   private:
-    // For all crossings of a block whose edges are all crossed, for the block as the first box, and for one half after the
-    // other, however it is halved.
-    static std::size_t room(int block_size) {
+    // For so many crossings of a block, or all of its edges, and for one half after the other, however it is halved.
+    std::size_t room(std::size_t crossings) const {
         constexpr std::size_t kMost = 6;  // lengths are 1, 2, 4, ... 32
-        const auto edges = [](std::size_t a, std::size_t b, std::size_t c) {
-            return a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1) + 2 * kLanes<float>;
+        const auto within = [&](std::size_t a, std::size_t b, std::size_t c) {
+            return std::min(crossings, a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1)) + 2 * kLanes<float>;
         };
         std::array<std::array<std::array<std::size_t, kMost>, kMost>, kMost> rooms;
         for (std::size_t x = 0; x < kMost; ++x) {
             for (std::size_t y = 0; y < kMost; ++y) {
                 for (std::size_t z = 0; z < kMost; ++z) {
                     const std::size_t half = std::max({x > 0 ? rooms[x - 1][y][z] : 0, y > 0 ? rooms[x][y - 1][z] : 0, z > 0 ? rooms[x][y][z - 1] : 0});
-                    rooms[x][y][z] = edges(std::size_t{1} << x, std::size_t{1} << y, std::size_t{1} << z) + half;
+                    rooms[x][y][z] = within(std::size_t{1} << x, std::size_t{1} << y, std::size_t{1} << z) + half;
                 }
             }
         }
-        const auto depth = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(block_size)));
-        const auto size = static_cast<std::size_t>(block_size);
-        return edges(size, size, size) + rooms[depth][depth][depth];
+        const auto depth = static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(block_size_)));
+        return rooms[depth][depth][depth];
     }
 
-    std::array<Array<float>, 3> places_;
+    int block_size_;
+    Array<float> numbers_;
+    std::size_t planned_ = 0;              // no block has as many crossings
+    std::array<float*, 3> places_{};       // within the numbers
     std::size_t start_ = 0, top_ = 0;
 };
 

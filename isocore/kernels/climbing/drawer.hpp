@@ -8,14 +8,11 @@
 
 #include "climbing/bars.hpp"
 #include "climbing/block_rices.hpp"
-#include "climbing/box_edges.hpp"
 #include "climbing/climb.hpp"
+#include "climbing/disks.hpp"
 #include "climbing/drawn_site.hpp"
-#include "climbing/edge_loop.hpp"
 #include "climbing/halvings.hpp"
-#include "climbing/polygon.hpp"
-#include "climbing/ruler.hpp"
-#include "common/array.hpp"
+#include "climbing/triangle_list.hpp"
 #include "common/decider.hpp"
 
 namespace isocore::climbing {
@@ -29,11 +26,9 @@ class Drawer {
           signs_(signs),
           layout_(layout),
           options_(options),
-          vertices_(vertices),
           site_(options.block_size),
           rices_(options.block_size),
-          edges_(options.block_size),
-          ruler_(samples, signs, options) {}
+          disks_(samples, signs, options, vertices) {}
 
     // Calls put(triangles) for some of a bar's triangles after the other; boxes that break the bound are noted in bar.broken.
     template <class Put>
@@ -47,38 +42,27 @@ class Drawer {
         const auto [start, y, z] = bars.origin(number);
         site_.begin(signs_, layout_, y, z);
         HalvingsReader halvings(bar.halvings);
-        std::size_t boxes = 0;
+        disks_.begin_bar();
         for (std::size_t x = start; x + 1 < signs_.dims[0]; x += bars.block_size) {
             const Fate fate = halvings.next_block();
             if (fate == Fate::nothing) continue;
             site_.load(x);
             rices_.read(fate, halvings);
-            for (const Piece& piece : rices_.boxes()) {
-                const HighRice box = piece.within(site_.cells);
-                draw_disk(box);
-                if (options_.measured) ruler_.add(site_.origin, box, boxes++, edges_.dropped(), polygon_, triangles_, bar);
-            }
+            disks_.draw(site_, rices_.boxes(), triangles_, bar);
             rices_.visit_cells(site_, [&](int j, int k, std::uint64_t cells) { draw_cells(bar, j, k, cells); });
-            put(std::span<const std::int32_t>(vertices_of_triangles_.data(), drawn_));
-            bar.triangles += drawn_ / 3;
-            drawn_ = 0;
+            put(triangles_.vertices());
+            bar.triangles += triangles_.size();
+            triangles_.clear();
         }
-        if (options_.measured) ruler_.take(bar);
+        disks_.end_bar(bar);
     }
 
   private:
     static constexpr std::size_t kMostOfCell = cell_loops::Case{}.edges.size() / 3;  // triangles
 
-    // Where triangles can be written, so many at most. They count once drawn_ says so.
-    std::int32_t* room_for(std::size_t triangles) {
-        if (vertices_of_triangles_.size() < drawn_ + 3 * triangles) vertices_of_triangles_.resize(2 * (drawn_ + 3 * triangles));
-        return vertices_of_triangles_.data() + drawn_;
-    }
-
     // Of a row, a bit each.
     void draw_cells(Bar& bar, int j, int k, std::uint64_t cells) {
-        std::int32_t* const start = room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
-        std::int32_t* out = start;
+        std::int32_t* out = triangles_.room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
         for (std::uint64_t left = cells; left; left &= left - 1) {
             const int x = std::countr_zero(left);
             const auto pair = [&](int right, int up) { return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3); };
@@ -95,7 +79,7 @@ class Drawer {
             const auto& drawn = cell_loops::kTable.cases[entry.first + decisions];
             for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
         }
-        drawn_ += static_cast<std::size_t>(out - start);
+        triangles_.end_at(out);
     }
 
     // The vertices on a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
@@ -117,42 +101,14 @@ class Drawer {
         return out;
     }
 
-    void draw_disk(const HighRice& box) {
-        edges_.find(site_, box);
-        loop_.arrange(edges_.kept(), box, site_.corners(box));
-        const auto kept = edges_.kept();
-        std::array<Coordinate, 3> origin;  // numbers are small when taken from there
-        for (std::size_t a = 0; a < 3; ++a) origin[a] = static_cast<Coordinate>(site_.origin[a] + box.low[a]) - static_cast<Coordinate>(signs_.pad);
-        polygon_.resize(kept.size());
-        for (std::size_t n = 0; n < kept.size(); ++n) {
-            const std::int32_t number = site_.vertex(kept[n].axis(), kept[n].at());
-            const Coordinate* place = vertices_ + 3 * static_cast<std::size_t>(number);
-            Spot from_there;
-            for (std::size_t a = 0; a < 3; ++a) from_there[a] = static_cast<float>(place[a] - origin[a]);
-            polygon_.set(loop_.place(n), from_there, loop_.faces(n), number);
-        }
-        triangles_ = polygon_.cut();
-        std::int32_t* out = room_for(triangles_.size());
-        drawn_ += 3 * triangles_.size();
-        for (const Polygon::Triangle& triangle : triangles_) {
-            for (const std::size_t corner : triangle) *out++ = polygon_.vertex(corner);
-        }
-    }
-
     const GridView<Sample>& samples_;
     const SignGrid& signs_;
     const Layout& layout_;
     const Options& options_;
-    const Coordinate* vertices_;
     DrawnSite site_;
     BlockRices rices_;
-    BoxEdges edges_;
-    EdgeLoop loop_;
-    Polygon polygon_;
-    std::span<const Polygon::Triangle> triangles_;  // of the box that was drawn last
-    Ruler<Sample> ruler_;
-    Array<std::int32_t> vertices_of_triangles_;
-    std::size_t drawn_ = 0;  // of them
+    TriangleList triangles_;  // of one block
+    Disks<Sample, Coordinate> disks_;
 };
 
 }  // namespace isocore::climbing

@@ -24,7 +24,10 @@ class DrawnSite : public Site {
         std::array<Half, 2> kept_halves{}, dropped_halves{};
     };
 
-    using Site::Site;
+    explicit DrawnSite(int block_size) : Site(block_size) {
+        cuts_.resize(samples() * samples());
+        next_vertices_.resize(cuts_.size());
+    }
 
     void begin(const SignGrid& signs, const Layout& layout, std::size_t y, std::size_t z) {
         Site::begin(signs, layout, y, z);
@@ -36,7 +39,7 @@ class DrawnSite : public Site {
 
     void load(std::size_t x) {
         Site::load(x);
-        std::fill_n(cuts_.begin(), samples() * samples(), Cut{});
+        std::fill(cuts_.begin(), cuts_.end(), Cut{});
         const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
         for (const Edge& start : crossed_rows()) {
             const std::size_t row = row_index(start.at(1), start.at(2)), axis = start.axis();
@@ -63,8 +66,8 @@ class DrawnSite : public Site {
     }
 
   private:
-    std::array<Cut, kRows> cuts_;
-    std::array<std::array<std::uint32_t, 3>, kRows> next_vertices_;  // what comes after the blocks that were loaded
+    Array<Cut> cuts_;
+    Array<std::array<std::uint32_t, 3>> next_vertices_;  // what comes after the blocks that were loaded
 };
 
 }  // namespace isocore::climbing

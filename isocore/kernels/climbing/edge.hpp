@@ -15,11 +15,12 @@ using Place = std::array<int, 3>;
 // A grid edge: its axis and its lower sample, a byte each. In one word, as whole words are copied faster than parts.
 class Edge {
   public:
-    Edge() = default;
+    constexpr Edge() = default;
+    explicit constexpr Edge(std::uint32_t word) : word_(word) {}
     static constexpr Edge along_x(unsigned i, unsigned j, unsigned k) { return Edge(i | j << 8 | k << 16); }
-    Edge further_along_x(int steps) const { return Edge(word_ + static_cast<std::uint32_t>(steps)); }
-    Edge of_axis(int axis) const { return Edge(word_ | static_cast<std::uint32_t>(axis) << 24); }
+    constexpr Edge of_axis(int axis) const { return Edge(word_ | static_cast<std::uint32_t>(axis) << 24); }
 
+    constexpr std::uint32_t word() const { return word_; }
     unsigned axis() const { return word_ >> 24; }
     int at(std::size_t a) const { return static_cast<int>(word_ >> 8 * a & 255); }
     Place at() const { return {at(0), at(1), at(2)}; }
@@ -27,6 +28,7 @@ class Edge {
     // The ends of a box, to be compared with.
     class Ends {
       public:
+        Ends() = default;
         explicit Ends(const HighRice& box) : low_(word(box.low)), high_(word(box.high)) {}
 
       private:
@@ -44,8 +46,7 @@ class Edge {
     }
 
   private:
-    explicit constexpr Edge(std::uint32_t word) : word_(word) {}
-    std::uint32_t word_;
+    std::uint32_t word_ = 0;
 };
 
 }  // namespace isocore::climbing

@@ -1,6 +1,7 @@
 // ligns.hpp - The crossings of a block, lign by lign.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,12 @@ namespace isocore::climbing {
 // that those who know it beforehand have it folded in.
 class Ligns {
   public:
+    // Of a block with so many samples per lign.
+    explicit Ligns(std::size_t samples) : samples_(samples) {
+        crossed.resize(3 * samples * samples);
+        shares.resize(crossed.size() * samples);
+    }
+
     std::vector<std::uint64_t> crossed;  // the crossed edges of each, one bit per lower sample
     Array<float> shares;                 // by edge: where it is crossed, as a share of the way
 
@@ -39,14 +46,10 @@ class Ligns {
         return edge(samples_, lign, static_cast<int>(along));
     }
 
-    void clear(std::size_t samples) {
-        samples_ = samples;
-        crossed.assign(3 * samples * samples, 0);
-        shares.resize(3 * samples * samples * samples);
-    }
+    void clear() { std::fill(crossed.begin(), crossed.end(), 0); }
 
   private:
-    std::size_t samples_ = 0;  // of a lign
+    std::size_t samples_;  // of a lign
 };
 
 }  // namespace isocore::climbing

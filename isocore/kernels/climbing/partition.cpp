@@ -25,7 +25,7 @@ template <int N>
 class Partition {
   public:
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
-        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N), clouds_(N) {}
+        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N), ligns_(N + 1), clouds_(N) {}
 
     // Adds a block to its bar. A bar's blocks come in their order; those whose samples lie on one side are left out.
     void climb(const Dims& origin, BarBoxes& bar) {
@@ -41,10 +41,9 @@ class Partition {
             for (auto* table : {&asked_, &passed_}) *table = {};
             gather();
         }
-        const Box whole{1, 1, 1};
-        const int found = price(whole, crossings_);
+        const int found = price(kWhole, crossings_);
         bar.halvings.add_block(fate(found));
-        settle(whole, found, crossings_, bar.halvings);
+        settle(kWhole, found, crossings_, bar.halvings);
         for (const HighRice& box : boxes_) cuts_.add(box);
         bar.highrices += boxes_.size();
         for (int n = 0; n < N * N; ++n) {
@@ -60,6 +59,7 @@ class Partition {
     using Dikes = Dike<N>;
     using Word = typename DikeBits<N>::Word;
     using Box = std::array<Label, 3>;
+    static constexpr Box kWhole{1, 1, 1};
     using Table = std::array<std::array<Word, 2 * N>, 2 * N>;  // by labels: [y][z], bit of x
     // Cells in a box from which on looking further pays; never where a judge has to look at all crossings.
     static constexpr int kWorthALook = 32;
@@ -68,7 +68,9 @@ class Partition {
     static constexpr int kAccepted = Survey<N>::kAccepted, kSplit = Survey<N>::kSplit;
 
     void gather() {
-        clouds_.clear();
+        std::size_t crossings = 0;
+        for (const Edge& start : site_.crossed_rows()) crossings += static_cast<std::size_t>(std::popcount(site_.row(start.at(1), start.at(2)).crossed[start.axis()]));
+        clouds_.begin(crossings);
         judge_->gather(site_, clouds_, ligns_);
         crossings_ = clouds_.finish();
     }
@@ -138,7 +140,7 @@ class Partition {
 
     void split(const Box& box, const Cloud& around, Halvings& halvings) {
         const std::size_t top = clouds_.top();
-        const Cloud here = judge_ && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
+        const Cloud here = judge_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
         const Choice choice = best_axis(box, here);
         const auto parts = halves(box, choice.axis);
         if (!is_cell(parts[0])) halvings.add(axes(box), {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
@@ -253,9 +255,9 @@ class Partition {
     Cuts<N> cuts_;
     std::vector<HighRice> boxes_;             // highrices of several cells
     std::array<std::uint32_t, N * N> cells_;  // those of one: [k][j], bit i
+    Ligns ligns_;
     Clouds clouds_;
     Cloud crossings_;       // of the whole block
-    Ligns ligns_;
     Table asked_, passed_;  // boxes by labels: judged, and found flat
 };
 

@@ -39,15 +39,10 @@ class Polygon {
     bool may_join(std::size_t i, std::size_t j) const { return !(corners_[i].faces & corners_[j].faces); }
     Vector<Numbers> places(std::size_t first) const;
     Vector<Numbers> in_all_lanes(std::size_t n) const;
-    void cut_four();
-    template <std::size_t n>
-    void cut_short();
-    void cut_long();
     void cut_ears();
     void find_apex(std::size_t i, std::size_t j);
     void note(std::size_t i, std::size_t j, float cost, std::size_t apex);
-    template <class Apex>
-    void list_triangles(std::size_t n, const Apex& apex);
+    void list_triangles();
 
     std::size_t size_ = 0, stride_ = 0;
     struct Corner {

@@ -12,6 +12,7 @@
 #include "climbing/edge.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/layout.hpp"
+#include "common/array.hpp"
 #include "common/signs.hpp"
 
 namespace isocore::climbing {
@@ -26,7 +27,12 @@ class Site {
         std::array<std::uint32_t, 3> first_crossing;  // the numbers of the first among them, where there are any
     };
 
-    explicit Site(int block_size) : stride_(block_size + 1) {}
+    explicit Site(int block_size) : stride_(block_size + 1) {
+        const std::size_t rows = samples() * samples();
+        next_crossings_.resize(rows);
+        rows_.resize(rows);
+        crossed_rows_.resize(3 * rows + 1);
+    }
 
     // Goes to the start of the bar through (y, z). Its blocks are then loaded in their order; only those without any
     // crossing may be left out.
@@ -108,7 +114,7 @@ class Site {
 
     const SignGrid* signs_ = nullptr;
     const Layout* layout_ = nullptr;
-    std::array<std::array<std::uint32_t, 3>, kRows> next_crossings_;  // of each row: what comes after the blocks that were loaded
+    Array<std::array<std::uint32_t, 3>> next_crossings_;  // of each row: what comes after the blocks that were loaded
 
   private:
     void set_size(std::size_t axis) {
@@ -133,8 +139,8 @@ class Site {
     }
 
     int stride_;
-    std::array<Row, kRows> rows_;
-    std::array<Edge, 3 * kRows + 1> crossed_rows_;  // and room for one that is not
+    Array<Row> rows_;
+    Array<Edge> crossed_rows_;  // and room for one that is not
     std::size_t crossed_size_ = 0;
 };
 

@@ -16,15 +16,14 @@
 
 namespace isocore::climbing {
 
-template <class Sample>
+template <class Sample, std::size_t room>
 class Spotter {
   public:
     using Numbers = Lanes<float>;
-    static constexpr std::size_t kRoom = 3 * Site::kRows;  // no box has more crossings, as none of its ligns has two
 
     Spotter(const GridView<Sample>& samples, const SignGrid& signs, double isovalue) : samples_(samples), signs_(signs), isovalue_(isovalue) {}
 
-    std::size_t size() const { return size_; }
+    bool full() const { return size_ == room; }
 
     // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`, as seen from the sample `from`.
     void add(const Dims& origin, int axis, const Place& at, const std::array<std::uint8_t, 3>& from = {}) {
@@ -55,7 +54,7 @@ class Spotter {
     }
 
   private:
-    using Row = std::array<float, kRoom + kLanes<float>>;
+    using Row = std::array<float, room + kLanes<float>>;
 
     const GridView<Sample>& samples_;
     const SignGrid& signs_;

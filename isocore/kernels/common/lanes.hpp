@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -57,6 +58,13 @@ struct LaneRegister<float> {
     static Type equal(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
     static Type both(Type a, Type b) { return _mm256_and_ps(a, b); }
     static Type either(Type a, Type b) { return _mm256_or_ps(a, b); }
+    static Type disjoint(Type a, Type b) {
+        return _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_castps_si256(_mm256_and_ps(a, b)), _mm256_setzero_si256()));
+    }
+    static Type tagged(Type a) {
+        const Type lanes = _mm256_castsi256_ps(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+        return _mm256_or_ps(_mm256_and_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(~7))), lanes);
+    }
     static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_ps(b, a, mask); }
     static bool any(Type mask) { return _mm256_movemask_ps(mask) != 0; }
     static unsigned bits(Type mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
@@ -119,6 +127,12 @@ struct LaneRegister {
     static Type less(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] < b[n]); }); }
     static Type not_above(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] <= b[n]); }); }
     static Type equal(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] == b[n]); }); }
+    static Type disjoint(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return T((std::bit_cast<std::uint32_t>(a[n]) & std::bit_cast<std::uint32_t>(b[n])) == 0); });
+    }
+    static Type tagged(const Type& a) {
+        return each([&](std::size_t n) { return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a[n]) & ~7u) | static_cast<std::uint32_t>(n)); });
+    }
     static Type both(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
     static Type either(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] + b[n] > 0); }); }
     static Type choose(const Type& mask, const Type& a, const Type& b) {
@@ -199,6 +213,10 @@ struct Lanes {
     friend LaneMask<T> operator<(const Lanes& a, const Lanes& b) { return {Register::less(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator<=(const Lanes& a, const Lanes& b) { return {Register::not_above(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator==(const Lanes& a, const Lanes& b) { return {Register::equal(a.lanes, b.lanes)}; }
+    // Of floats: have their bits none in common?
+    friend LaneMask<T> have_no_bit_in_common(const Lanes& a, const Lanes& b) { return {Register::disjoint(a.lanes, b.lanes)}; }
+    // Floats with their lane in the last three bits: the least one tells where it is.
+    friend Lanes tagged(const Lanes& a) { return Lanes(Register::tagged(a.lanes)); }
     // The first `count` lanes of a, and the others of b.
     friend Lanes first_lanes(const Lanes& a, std::size_t count, const Lanes& b) {
         return choose(Lanes(kLaneNumbers<T>.data()) < static_cast<T>(count), a, b);

@@ -1,0 +1,60 @@
+#include "climbing/polygons.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+namespace isocore::climbing {
+
+template <std::size_t length>
+void Polygons<length>::cut(std::size_t count) {
+    constexpr float kIllegal = 1e30f;  // more than any area; a few of them are still a number
+    std::array<std::array<Numbers, length>, length> cost;  // twice the area of the best triangles between two corners
+    for (std::size_t i = 0; i + 1 < length; ++i) cost[i][i + 1] = 0.0f;
+    for (std::size_t span = 2; span < length; ++span) {
+        for (std::size_t i = 0; i + span < length; ++i) {
+            const std::size_t j = i + span;
+            const auto from = places(i), along = minus(places(j), from);
+            Numbers best(std::numeric_limits<float>::infinity()), apex(0.0f);
+            for (std::size_t k = i + 1; k < j; ++k) {
+                const auto normal = cross(minus(places(k), from), along);
+                const Numbers price = cost[i][k] + cost[k][j] + root(dot(normal, normal));
+                apex = choose(price < best, Numbers(static_cast<float>(k)), apex);
+                best = least(best, price);
+            }
+            apex.store(apex_[i][j].data());
+            const bool is_whole = span + 1 == length;
+            cost[i][j] = is_whole ? best : choose(have_no_bit_in_common(Numbers(faces_[i].data()), Numbers(faces_[j].data())), best, kIllegal);
+        }
+    }
+    const auto found = cost[0][length - 1].each();
+    for (std::size_t n = 0; n < count; ++n) {
+        if (!(found[n] < kIllegal)) throw std::logic_error("a loop has no legal triangulation");
+    }
+}
+
+template <std::size_t length>
+auto Polygons<length>::triangles(std::size_t n) const -> std::array<Triangle, kTriangles> {
+    std::array<Triangle, kTriangles> out;
+    std::array<std::array<std::size_t, 2>, length> parts;
+    parts[0] = {0, length - 1};
+    std::size_t top = 1;
+    for (Triangle& triangle : out) {
+        const auto [i, j] = parts[--top];
+        const auto k = static_cast<std::size_t>(apex_[i][j][n]);
+        triangle = {i, k, j};
+        parts[top] = {i, k};
+        top += k - i > 1;
+        parts[top] = {k, j};
+        top += j - k > 1;
+    }
+    return out;
+}
+
+template class Polygons<3>;
+template class Polygons<4>;
+template class Polygons<5>;
+template class Polygons<6>;
+template class Polygons<7>;
+template class Polygons<8>;
+
+}  // namespace isocore::climbing
