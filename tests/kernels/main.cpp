@@ -7,6 +7,7 @@ void test_signs();
 void test_halvings();
 void test_facets();
 void test_polygons();
+void test_in_order();
 void test_cell_loops();
 void test_climbing();
 void test_marching_cubes();
@@ -20,6 +21,7 @@ int main() {
     test_halvings();
     test_facets();
     test_polygons();
+    test_in_order();
     test_cell_loops();
     test_climbing();
     test_marching_cubes();
