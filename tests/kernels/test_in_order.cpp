@@ -49,14 +49,20 @@ void bars_come_out_in_their_order(int threads, std::size_t most_early) {
     }
 }
 
+const std::vector<std::int32_t> kNumber{7};
+
+// Bar 0 has begun, and bar 1 has a number that waits for it.
+void keep_one_aside(InOrder& in_order) {
+    in_order.begin(0);
+    in_order.begin(1);
+    in_order.put(1, kNumber);
+}
+
 // With room for no early numbers, a bar is begun only once those before it are out, or none of them has any numbers yet.
 void no_bar_begins_while_too_much_is_kept_aside() {
     Array<std::int32_t> out(4);
     InOrder in_order(4, 0, out);
-    const std::vector<std::int32_t> number{7};
-    in_order.begin(0);
-    in_order.begin(1);
-    in_order.put(1, number);  // kept aside
+    keep_one_aside(in_order);
     in_order.end(1);
     std::atomic<bool> has_begun{false};
     std::thread third([&] {
@@ -65,7 +71,7 @@ void no_bar_begins_while_too_much_is_kept_aside() {
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     CHECK(!has_begun);
-    in_order.put(0, number);
+    in_order.put(0, kNumber);
     in_order.end(0);
     third.join();
     CHECK(has_begun);
@@ -74,10 +80,7 @@ void no_bar_begins_while_too_much_is_kept_aside() {
 void nobody_waits_for_a_bar_that_failed() {
     Array<std::int32_t> out(4);
     InOrder in_order(4, 0, out);
-    const std::vector<std::int32_t> number{7};
-    in_order.begin(0);
-    in_order.begin(1);
-    in_order.put(1, number);
+    keep_one_aside(in_order);
     std::thread third([&] { in_order.begin(2); });
     in_order.give_up();
     third.join();

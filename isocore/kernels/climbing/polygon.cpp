@@ -37,19 +37,6 @@ Vector<Numbers> Polygon::places(std::size_t first) const {
 
 Vector<Numbers> Polygon::in_all_lanes(std::size_t n) const { return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])}; }
 
-void Polygon::list_triangles() {
-    parts_[0] = {0, size_ - 1};
-    for (std::size_t listed = 0, top = 1; listed < size_ - 2; ++listed) {
-        const auto [i, j] = parts_[--top];
-        const std::size_t k = apex_[i * stride_ + j];
-        triangles_[listed] = {i, k, j};
-        parts_[top] = {i, k};
-        top += k - i > 1;
-        parts_[top] = {k, j};
-        top += j - k > 1;
-    }
-}
-
 std::span<const Polygon::Triangle> Polygon::cut() {
     cut_ears();
     for (std::size_t span = 3; span < size_; ++span) {
@@ -57,7 +44,7 @@ std::span<const Polygon::Triangle> Polygon::cut() {
     }
     constexpr float kMost = kIllegal / 2;  // not kIllegal itself, as a price has its lane in its last bits
     if (!(cost_[size_ - 1] < kMost)) throw std::logic_error("a loop has no legal triangulation");
-    list_triangles();
+    list_triangles(size_, [&](std::size_t i, std::size_t j) { return std::size_t{apex_[i * stride_ + j]}; }, parts_.data(), triangles_.data());
     return {triangles_.data(), size_ - 2};
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "climbing/loop_triangles.hpp"
 #include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
 
@@ -15,7 +16,7 @@ namespace isocore::climbing {
 
 class Polygon {
   public:
-    using Triangle = std::array<std::size_t, 3>;  // numbers of corners
+    using Triangle = LoopTriangle;
 
     void resize(std::size_t size) {
         if (corners_.size() < size) make_room(size);
@@ -42,7 +43,6 @@ class Polygon {
     void cut_ears();
     void find_apex(std::size_t i, std::size_t j);
     void note(std::size_t i, std::size_t j, float cost, std::size_t apex);
-    void list_triangles();
 
     std::size_t size_ = 0, stride_ = 0;
     struct Corner {
@@ -55,7 +55,7 @@ class Polygon {
     // one at that line.
     std::vector<float> cost_;
     std::vector<std::uint16_t> apex_;
-    std::vector<std::array<std::size_t, 2>> parts_;
+    std::vector<LoopPart> parts_;
     std::vector<Triangle> triangles_;
 };
 

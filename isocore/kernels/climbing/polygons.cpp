@@ -35,18 +35,8 @@ void Polygons<length>::cut(std::size_t count) {
 template <std::size_t length>
 auto Polygons<length>::triangles(std::size_t n) const -> std::array<Triangle, kTriangles> {
     std::array<Triangle, kTriangles> out;
-    std::array<std::array<std::size_t, 2>, length> parts;
-    parts[0] = {0, length - 1};
-    std::size_t top = 1;
-    for (Triangle& triangle : out) {
-        const auto [i, j] = parts[--top];
-        const auto k = static_cast<std::size_t>(apex_[i][j][n]);
-        triangle = {i, k, j};
-        parts[top] = {i, k};
-        top += k - i > 1;
-        parts[top] = {k, j};
-        top += j - k > 1;
-    }
+    std::array<LoopPart, length> parts;
+    list_triangles(length, [&](std::size_t i, std::size_t j) { return static_cast<std::size_t>(apex_[i][j][n]); }, parts.data(), out.data());
     return out;
 }
 

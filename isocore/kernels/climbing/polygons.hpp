@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "climbing/loop_triangles.hpp"
 #include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
 
@@ -20,7 +21,7 @@ class Polygons {
   public:
     static constexpr std::size_t kCount = kLanes<float>;
     static constexpr std::size_t kTriangles = length - 2;
-    using Triangle = std::array<std::size_t, 3>;  // numbers of corners
+    using Triangle = LoopTriangle;
 
     // Of loop n; faces: those of the box that the corner lies on, a bit each.
     void set(std::size_t n, std::size_t corner, const Spot& place, unsigned faces, std::int32_t vertex) {
