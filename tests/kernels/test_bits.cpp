@@ -28,7 +28,8 @@ void extracted_bits_go_back_to_their_places() {
 
 void lowest_bits_counts_to_a_whole_word() {
     std::uint64_t expected = 0;
-    for (std::size_t count = 0; count <= 64; ++count, expected = expected << 1 | 1) CHECK(lowest_bits(count) == expected);
+    for (std::size_t count = 0; count <= 64; ++count, expected = expected << 1 | 1)
+        CHECK(lowest_bits(count) == expected);
 }
 
 void set_bits_come_word_by_word() {

@@ -95,7 +95,8 @@ void a_face_is_drawn_by_its_own_corners_and_the_other_way_round_from_across() {
         });
         for_each_case([&](unsigned corners, unsigned joined, const Case& drawn) {
             std::set<Directed> seen_from_across;
-            for (const auto& [a, b] : on_face(rim(drawn), face + 1)) seen_from_across.insert({across(b, face + 1), across(a, face + 1)});
+            for (const auto& [a, b] : on_face(rim(drawn), face + 1))
+                seen_from_across.insert({across(b, face + 1), across(a, face + 1)});
             CHECK(by_face_corners.at(key(corners, joined, face + 1)) == seen_from_across);
         });
     }

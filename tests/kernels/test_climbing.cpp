@@ -34,8 +34,10 @@ void capped_noise_is_closed_and_does_not_depend_on_threads() {
         const auto samples = noise<std::uint8_t>(dims, 3, seed);
         for (int block_size = 1; block_size <= 32; block_size *= 2) {
             for (double max_error : {kNoBound, 0.3, 0.0}) {
-                const auto one = climb<std::uint8_t, float>({samples.data(), dims}, options(1, block_size, max_error, 1));
-                const auto three = climb<std::uint8_t, float>({samples.data(), dims}, options(1, block_size, max_error, 3));
+                const auto one =
+                    climb<std::uint8_t, float>({samples.data(), dims}, options(1, block_size, max_error, 1));
+                const auto three =
+                    climb<std::uint8_t, float>({samples.data(), dims}, options(1, block_size, max_error, 3));
                 CHECK(closed_and_oriented(one));
                 CHECK(one.triangles == three.triangles && one.vertices == three.vertices);
                 CHECK(one.facts.in_voxels.max <= max_error);
@@ -50,7 +52,9 @@ std::vector<float> waves(const Dims& dims) {
     for (std::size_t k = 0; k < dims[2]; ++k) {
         for (std::size_t j = 0; j < dims[1]; ++j) {
             for (std::size_t i = 0; i < dims[0]; ++i) {
-                const auto wave = [](std::size_t at, double length) { return std::sin(static_cast<double>(at) / length); };
+                const auto wave = [](std::size_t at, double length) {
+                    return std::sin(static_cast<double>(at) / length);
+                };
                 samples.push_back(static_cast<float>(wave(i, 7.0) + wave(j, 5.0) + wave(k, 6.0)));
             }
         }

@@ -19,7 +19,9 @@ using namespace isocore::climbing;
 using Exact = Vector<double>;
 using Triangle = std::array<Spot, 3>;
 
-Exact exact(const Spot& spot) { return {static_cast<double>(spot[0]), static_cast<double>(spot[1]), static_cast<double>(spot[2])}; }
+Exact exact(const Spot& spot) {
+    return {static_cast<double>(spot[0]), static_cast<double>(spot[1]), static_cast<double>(spot[2])};
+}
 
 double distance_to_side(const Exact& point, const Exact& from, const Exact& to) {
     const Exact along = minus(to, from), off = minus(point, from);
@@ -82,11 +84,14 @@ void distances_are_those_of_the_definition() {
             rows[a].resize(points.size() + kLanes<float>);
         }
         std::vector<float> found(points.size() + kLanes<float>);
-        facets->squared_distances(first, count, {rows[0].data(), rows[1].data(), rows[2].data()}, points.size(), found.data());
+        facets->squared_distances(first, count, {rows[0].data(), rows[1].data(), rows[2].data()}, points.size(),
+                                  found.data());
         for (std::size_t n = 0; n < points.size(); ++n) {
             double expected = std::numeric_limits<double>::infinity();
-            for (std::size_t t = first; t < first + count; ++t) expected = std::min(expected, distance(exact(points[n]), triangles[t]));
-            furthest_off = std::max(furthest_off, std::abs(std::sqrt(static_cast<double>(found[n])) - expected) / static_cast<double>(size));
+            for (std::size_t t = first; t < first + count; ++t)
+                expected = std::min(expected, distance(exact(points[n]), triangles[t]));
+            furthest_off = std::max(furthest_off, std::abs(std::sqrt(static_cast<double>(found[n])) - expected) /
+                                                      static_cast<double>(size));
         }
     }
     CHECK(furthest_off < 1e-6);

@@ -29,12 +29,15 @@ int depth(const Box& box) {
 // Halves a block at random and notes what comes of it.
 class RandomBlock {
   public:
-    RandomBlock(int size, unsigned seed, Halvings& halvings) : size_(size), random_(seed), halvings_(halvings), cells_(static_cast<std::size_t>(size * size)) {
+    RandomBlock(int size, unsigned seed, Halvings& halvings)
+        : size_(size), random_(seed), halvings_(halvings), cells_(static_cast<std::size_t>(size * size)) {
         const Box whole{{0, 0, 0}, {size, size, size}};
         const auto fate = size > 1 && random_() % 4 ? Fate::halved : Fate::highrice;
         halvings_.add_block(fate);
-        if (fate == Fate::halved) halve(whole);
-        else settle(whole);
+        if (fate == Fate::halved)
+            halve(whole);
+        else
+            settle(whole);
     }
 
     int size() const { return size_; }
@@ -66,8 +69,10 @@ class RandomBlock {
         }
     }
     void settle(const Box& box) {
-        if (depth(box) > 0) boxes_.push_back(box);
-        else cells_[static_cast<std::size_t>(box.low[1] + size_ * box.low[2])] |= 1u << box.low[0];
+        if (depth(box) > 0)
+            boxes_.push_back(box);
+        else
+            cells_[static_cast<std::size_t>(box.low[1] + size_ * box.low[2])] |= 1u << box.low[0];
     }
 
     int size_;
@@ -98,7 +103,8 @@ void what_is_written_is_read() {
             }
             CHECK(boxes == block.boxes());
             for (int k = 0; k < size; ++k) {
-                for (int j = 0; j < size; ++j) CHECK(rices.cells(j, k) == block.cells()[static_cast<std::size_t>(j + size * k)]);
+                for (int j = 0; j < size; ++j)
+                    CHECK(rices.cells(j, k) == block.cells()[static_cast<std::size_t>(j + size * k)]);
             }
         }
     }

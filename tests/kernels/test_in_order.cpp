@@ -58,7 +58,8 @@ void keep_one_aside(InOrder& in_order) {
     in_order.put(1, kNumber);
 }
 
-// With room for no early numbers, a bar is begun only once those before it are out, or none of them has any numbers yet.
+// With room for no early numbers, a bar is begun only once those before it are out, or none of them has any numbers
+// yet.
 void no_bar_begins_while_too_much_is_kept_aside() {
     Array<std::int32_t> out(4);
     InOrder in_order(4, 0, out);
@@ -91,7 +92,8 @@ void nobody_waits_for_a_bar_that_failed() {
 
 void test_in_order() {
     for (const int threads : {1, 2, 5}) {
-        for (const std::size_t most_early : {std::size_t{0}, std::size_t{20}, std::size_t{100000}}) bars_come_out_in_their_order(threads, most_early);
+        for (const std::size_t most_early : {std::size_t{0}, std::size_t{20}, std::size_t{100000}})
+            bars_come_out_in_their_order(threads, most_early);
     }
     no_bar_begins_while_too_much_is_kept_aside();
     nobody_waits_for_a_bar_that_failed();

@@ -37,7 +37,8 @@ void the_whole_range_of_isovalues_is_harmless() {
     const Dims dims{3, 3, 3};
     const auto samples = noise<std::int32_t>(dims, 5, 1);
     for (double isovalue : {-1e300, -1.0, 0.0, 4.0, 5.0, 1e300}) {
-        CHECK(closed_and_oriented(march<std::int32_t, double>({samples.data(), dims}, Options{isovalue, false, true, false, 2})));
+        CHECK(closed_and_oriented(
+            march<std::int32_t, double>({samples.data(), dims}, Options{isovalue, false, true, false, 2})));
     }
 }
 

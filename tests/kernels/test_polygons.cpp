@@ -26,9 +26,14 @@ struct Loop {
     std::vector<Spot> places;
     std::vector<unsigned> faces;  // of each corner, a bit each
 
-    bool may_join(std::size_t i, std::size_t j) const { return j == i + 1 || (i == 0 && j + 1 == places.size()) || !(faces[i] & faces[j]); }
+    bool may_join(std::size_t i, std::size_t j) const {
+        return j == i + 1 || (i == 0 && j + 1 == places.size()) || !(faces[i] & faces[j]);
+    }
     double area(std::size_t i, std::size_t j, std::size_t k) const {
-        const auto exact = [&](std::size_t n) -> Vector<double> { return {static_cast<double>(places[n][0]), static_cast<double>(places[n][1]), static_cast<double>(places[n][2])}; };
+        const auto exact = [&](std::size_t n) -> Vector<double> {
+            return {static_cast<double>(places[n][0]), static_cast<double>(places[n][1]),
+                    static_cast<double>(places[n][2])};
+        };
         const auto normal = cross(minus(exact(j), exact(i)), minus(exact(k), exact(i)));
         return std::sqrt(dot(normal, normal));
     }
@@ -37,7 +42,8 @@ struct Loop {
         if (!may_join(i, j)) return std::numeric_limits<double>::infinity();
         if (j == i + 1) return 0;
         double least = std::numeric_limits<double>::infinity();
-        for (std::size_t k = i + 1; k < j; ++k) least = std::min(least, least_area(i, k) + least_area(k, j) + area(i, k, j));
+        for (std::size_t k = i + 1; k < j; ++k)
+            least = std::min(least, least_area(i, k) + least_area(k, j) + area(i, k, j));
         return least;
     }
     double least_area() const { return least_area(0, places.size() - 1); }
@@ -80,7 +86,8 @@ void one_loop_is_cut_at_the_least_price() {
     for (int trial = 0; trial < 4000; ++trial) {
         const Loop loop = random_loop(random, 3 + random() % 8);
         polygon.resize(loop.places.size());
-        for (std::size_t n = 0; n < loop.places.size(); ++n) polygon.set(n, loop.places[n], loop.faces[n], static_cast<std::int32_t>(n));
+        for (std::size_t n = 0; n < loop.places.size(); ++n)
+            polygon.set(n, loop.places[n], loop.faces[n], static_cast<std::int32_t>(n));
         bool is_cut = true;
         Triangles triangles;
         try {
@@ -102,7 +109,8 @@ void several_loops_are_cut_at_the_least_price() {
         for (std::size_t n = 1 + random() % polygons.kCount; n > 0; --n) loops.push_back(random_loop(random, length));
         bool all_can_be = true;
         for (std::size_t n = 0; n < loops.size(); ++n) {
-            for (std::size_t c = 0; c < length; ++c) polygons.set(n, c, loops[n].places[c], loops[n].faces[c], static_cast<std::int32_t>(100 * n + c));
+            for (std::size_t c = 0; c < length; ++c)
+                polygons.set(n, c, loops[n].places[c], loops[n].faces[c], static_cast<std::int32_t>(100 * n + c));
             all_can_be = all_can_be && std::isfinite(loops[n].least_area());
         }
         bool is_cut = true;

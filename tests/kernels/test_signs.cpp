@@ -14,7 +14,8 @@ namespace {
 using namespace isocore;
 
 // Of a padded grid, 0 for the padding.
-bool expected(const std::vector<std::uint8_t>& data, const Dims& dims, std::size_t pad, std::size_t i, std::size_t j, std::size_t k) {
+bool expected(const std::vector<std::uint8_t>& data, const Dims& dims, std::size_t pad, std::size_t i, std::size_t j,
+              std::size_t k) {
     const std::array<std::size_t, 3> at{i - pad, j - pad, k - pad};  // past any end where it would be negative
     for (std::size_t a = 0; a < 3; ++a) {
         if (at[a] >= dims[a]) return false;

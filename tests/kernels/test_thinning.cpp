@@ -39,7 +39,8 @@ Box make_box(int size, std::mt19937& random) {
     }
     for (int n = 0; n < size * size * size; ++n) {
         const int i = n % size, j = n / size % size, k = n / size / size;
-        for (const auto& [a, b, c] : {std::array{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) {
+        for (const auto& [a, b, c] :
+             {std::array{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) {
             box.hexes.push_back(id(i + a, j + b, k + c));
         }
         std::array<int, 3> order{0, 1, 2};
@@ -60,8 +61,10 @@ void walks_find_what_a_full_scan_finds() {
     for (int trial = 0; trial < 20; ++trial) {
         Box box = make_box(1 + trial % 4, random);
         if (trial % 5 == 0) box.values[0] = std::numeric_limits<double>::quiet_NaN();
-        if (trial % 2) box.tets.clear();
-        else box.hexes.clear();
+        if (trial % 2)
+            box.tets.clear();
+        else
+            box.hexes.clear();
         const mesh::Field<double> field{box.points.data(), box.values.data(), box.values.size()};
         const std::size_t tets = box.tets.size() / 4, hexes = box.hexes.size() / 8;
         thinning::Index index = thinning::build(field, {box.tets.data(), box.hexes.data(), tets, hexes});
@@ -72,12 +75,17 @@ void walks_find_what_a_full_scan_finds() {
         }
         std::vector<std::int32_t> vertex_of_edge(index.edge_count);
         const auto view = [](const thinning::Part& part, std::size_t cells) {
-            return thinning::PartView{part.records.data(), part.skeleton.data(), part.low.data(), part.high.data(), cells, part.skeleton.size()};
+            return thinning::PartView{
+                part.records.data(), part.skeleton.data(), part.low.data(), part.high.data(), cells,
+                part.skeleton.size()};
         };
-        const thinning::IndexView at{view(index.tets, tets), view(index.hexes, hexes), index.points.data(), vertex_of_edge.data()};
+        const thinning::IndexView at{view(index.tets, tets), view(index.hexes, hexes), index.points.data(),
+                                     vertex_of_edge.data()};
         for (const double isovalue : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.5, 4.0, 9.0}) {
-            const auto walked = thinning::propagate<double>(mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);
-            const auto scanned = marching_cells::march<double>(field, {box.tets.data(), box.hexes.data(), tets, hexes}, isovalue, 1);
+            const auto walked = thinning::propagate<double>(
+                mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);
+            const auto scanned =
+                marching_cells::march<double>(field, {box.tets.data(), box.hexes.data(), tets, hexes}, isovalue, 1);
             CHECK(walked.visited == scanned.intersected);
             CHECK(walked.triangles.size() == scanned.triangles.size());
             CHECK(walked.vertices.size() == scanned.vertices.size());
@@ -97,7 +105,8 @@ void walks_through_volumes_find_what_marching_cubes_finds() {
         const auto skeleton = thinning::thin_grid(grid, options);
         const std::size_t pad = options.capped ? 1 : 0;
         std::vector<std::int32_t> place((dims[0] + 2 * pad - 1) * (dims[1] + 2 * pad - 1) * (dims[2] + 2 * pad - 1));
-        const thinning::GridSkeletonView view{skeleton.cells.data(), skeleton.low.data(), skeleton.high.data(), skeleton.cells.size(), place.data()};
+        const thinning::GridSkeletonView view{skeleton.cells.data(), skeleton.low.data(), skeleton.high.data(),
+                                              skeleton.cells.size(), place.data()};
         for (const double isovalue : {0.0, 1.0, 2.5, 4.0, 7.0}) {
             const auto walked = thinning::propagate_grid(grid, view, isovalue, options, 1 + trial % 3);
             marching_cubes::Options asked;
@@ -142,14 +151,16 @@ void triangles_of_a_tetrahedron_face_outside() {
             for (std::size_t n = 0; n < 3; ++n) {
                 const auto& ends = mesh::Tet::kShape.ends[drawn.edges[3 * t + n]];
                 CHECK(((signs >> ends[0] ^ signs >> ends[1]) & 1) == 1);
-                for (std::size_t axis = 0; axis < 3; ++axis) corner[n][axis] = (kPlaces[ends[0]][axis] + kPlaces[ends[1]][axis]) / 2;
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    corner[n][axis] = (kPlaces[ends[0]][axis] + kPlaces[ends[1]][axis]) / 2;
             }
             const auto side = [&](std::size_t n, std::size_t axis) { return corner[n][axis] - corner[0][axis]; };
             for (unsigned c = 0; c < 4; ++c) {
                 double height = 0;
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-                    height += (kPlaces[c][axis] - corner[0][axis]) * (side(1, u) * side(2, v) - side(1, v) * side(2, u));
+                    height +=
+                        (kPlaces[c][axis] - corner[0][axis]) * (side(1, u) * side(2, v) - side(1, v) * side(2, u));
                 }
                 CHECK(signs >> c & 1 ? height < 0 : height > 0);
             }

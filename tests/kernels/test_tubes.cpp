@@ -27,7 +27,8 @@ void for_each_case(const Visit& visit) {
         const cell_loops::Corners& entry = cell_loops::kTable.corners[corners];
         for (unsigned packed = 0; packed < 1u << std::popcount(unsigned{entry.ambiguous}); ++packed) {
             const std::size_t number = entry.first + packed;
-            visit(corners, cell_loops::derivation::spread(packed, entry.ambiguous), cell_loops::kTable.cases[number], number);
+            visit(corners, cell_loops::derivation::spread(packed, entry.ambiguous), cell_loops::kTable.cases[number],
+                  number);
         }
     }
 }
@@ -75,8 +76,11 @@ void collect(const AnyCase& drawn, unsigned corners, unsigned joined, std::array
         if (face < 0 || open.count({a, b}) || open.count({b, a})) continue;
         unsigned signs = 0;
         for (int c : cube::face_ring(face)) signs |= (corners >> c & 1) << (c & flat);
-        const auto low = [&](int edge) { return cube::edge_between(cube::low_corner(edge) & flat, cube::high_corner(edge) & flat); };
-        of_side[static_cast<std::size_t>(face & 1)].insert({face / 2, signs, (joined >> face & 1) != 0, {low(a), low(b)}});
+        const auto low = [&](int edge) {
+            return cube::edge_between(cube::low_corner(edge) & flat, cube::high_corner(edge) & flat);
+        };
+        of_side[static_cast<std::size_t>(face & 1)].insert(
+            {face / 2, signs, (joined >> face & 1) != 0, {low(a), low(b)}});
     }
 }
 

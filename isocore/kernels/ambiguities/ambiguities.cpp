@@ -23,7 +23,8 @@ std::uint64_t alternating(const SignGrid& signs, int axis, std::size_t j, std::s
     const SignRow row = signs.row(j, k);
     const std::uint64_t here = row.word(w);
     if (axis == 0) {
-        const std::uint64_t right = signs.row(j + 1, k).word(w), up = signs.row(j, k + 1).word(w), both = signs.row(j + 1, k + 1).word(w);
+        const std::uint64_t right = signs.row(j + 1, k).word(w), up = signs.row(j, k + 1).word(w),
+                            both = signs.row(j + 1, k + 1).word(w);
         return (here ^ right) & (here ^ up) & ~(here ^ both) & signs.valid(w);
     }
     const SignRow other = axis == 1 ? signs.row(j, k + 1) : signs.row(j + 1, k);
@@ -31,7 +32,8 @@ std::uint64_t alternating(const SignGrid& signs, int axis, std::size_t j, std::s
 }
 
 template <class Sample>
-void add(const GridView<Sample>& samples, double isovalue, bool below, int axis, std::array<std::size_t, 3> at, Found& found) {
+void add(const GridView<Sample>& samples, double isovalue, bool below, int axis, std::array<std::size_t, 3> at,
+         Found& found) {
     const auto across = cube::other_axes(axis);
     const Sample* low = samples.data + samples.index(at[0], at[1], at[2]);
     const std::size_t u = samples.step(across[0]), v = samples.step(across[1]);

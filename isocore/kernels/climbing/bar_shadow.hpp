@@ -1,5 +1,5 @@
-// bar_shadow.hpp - The rows of a bar, one laid over the other: they tell which of its blocks have samples on both sides, so
-// that only those are read.
+// bar_shadow.hpp - The rows of a bar, one laid over the other: they tell which of its blocks have samples on both
+// sides, so that only those are read.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace isocore::climbing {
 class BarShadow {
   public:
     // Of the bar of blocks of N^3 cells that starts at row (y, z).
-    BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z) : any_(signs.words + 1, 0), all_(signs.words + 1, ~std::uint64_t{0}) {
+    BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z)
+        : any_(signs.words + 1, 0), all_(signs.words + 1, ~std::uint64_t{0}) {
         for (std::size_t k = z; k < std::min(z + N + 1, signs.dims[2]); ++k) {
             for (std::size_t j = y; j < std::min(y + N + 1, signs.dims[1]); ++j) {
                 const SignRow row = signs.row(j, k);

@@ -31,7 +31,9 @@ struct Bars {
     std::vector<Bar> bars;  // [z][y]
 
     // Where a bar starts.
-    Dims origin(std::size_t number) const { return {0, block_size * (number % blocks[1]), block_size * (number / blocks[1])}; }
+    Dims origin(std::size_t number) const {
+        return {0, block_size * (number % blocks[1]), block_size * (number / blocks[1])};
+    }
 };
 
 inline Bars lay_out_bars(const SignGrid& signs, int block_size) {

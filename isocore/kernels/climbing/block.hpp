@@ -19,7 +19,8 @@ class Block {
 
     // Reads the block that starts at sample `origin`.
     void load(const SignGrid& signs, const Dims& origin) {
-        for (std::size_t a = 0; a < 3; ++a) cells[a] = static_cast<int>(std::min<std::size_t>(N, signs.dims[a] - 1 - origin[a]));
+        for (std::size_t a = 0; a < 3; ++a)
+            cells[a] = static_cast<int>(std::min<std::size_t>(N, signs.dims[a] - 1 - origin[a]));
         const Word kept = static_cast<Word>((std::uint64_t{2} << cells[0]) - 1), beyond = DikeBits<N>::kSamples & ~kept;
         for (int k = 0; k <= N; ++k) {
             for (int j = 0; j <= N; ++j) {

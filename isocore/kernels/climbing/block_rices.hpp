@@ -1,5 +1,5 @@
-// block_rices.hpp - The highrices of one block, read from its halvings. A processor cannot guess what becomes of a piece, so that
-// no piece takes a branch.
+// block_rices.hpp - The highrices of one block, read from its halvings. A processor cannot guess what becomes of a
+// piece, so that no piece takes a branch.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,8 @@ namespace isocore::climbing {
 class BlockRices {
   public:
     explicit BlockRices(int block_size) : block_size_(block_size) {
-        const auto rows = static_cast<std::size_t>(block_size * block_size), cells = rows * static_cast<std::size_t>(block_size);
+        const auto rows = static_cast<std::size_t>(block_size * block_size),
+                   cells = rows * static_cast<std::size_t>(block_size);
         for (auto* pieces : {&boxes_, &pairs_}) pieces->resize(cells / 2 + 1);
         cells_.resize(rows);
     }
@@ -27,8 +28,10 @@ class BlockRices {
         std::size_t pairs = 0;
         size_ = 0;
         std::fill(cells_.begin(), cells_.end(), block_size_ == 1);
-        if (fate == Fate::halved) pairs = read_pieces(halvings);
-        else if (block_size_ > 1) boxes_[size_++] = Piece::block(block_size_);
+        if (fate == Fate::halved)
+            pairs = read_pieces(halvings);
+        else if (block_size_ > 1)
+            boxes_[size_++] = Piece::block(block_size_);
         for (const Piece& pair : std::span(pairs_.data(), pairs)) {
             const unsigned along_x = pair.axes() & 1, along_y = pair.axes() >> 1 & 1, along_z = pair.axes() >> 2;
             const auto row = static_cast<std::size_t>(pair.low(1) + block_size_ * pair.low(2));
@@ -51,10 +54,12 @@ class BlockRices {
             for (int j = 0; j < site.cells[1]; ++j) {
                 const std::uint32_t single = cells(j, k);
                 if (single == 0) continue;
-                const std::uint64_t a = site.row(j, k).signs, b = site.row(j + 1, k).signs, c = site.row(j, k + 1).signs, d = site.row(j + 1, k + 1).signs;
+                const std::uint64_t a = site.row(j, k).signs, b = site.row(j + 1, k).signs,
+                                    c = site.row(j, k + 1).signs, d = site.row(j + 1, k + 1).signs;
                 const std::uint64_t any = a | b | c | d, all = a & b & c & d;
                 const std::uint64_t inside = (std::uint64_t{1} << site.cells[0]) - 1;
-                if (const std::uint64_t crossed = single & inside & (any | any >> 1) & ~(all & all >> 1)) visit(j, k, crossed);
+                if (const std::uint64_t crossed = single & inside & (any | any >> 1) & ~(all & all >> 1))
+                    visit(j, k, crossed);
             }
         }
     }

@@ -1,5 +1,5 @@
-// box_edges.hpp - The crossed edges of several highrices of a block: those on a box's surface that are kept, and those that
-// are dropped.
+// box_edges.hpp - The crossed edges of several highrices of a block: those on a box's surface that are kept, and those
+// that are dropped.
 #pragma once
 
 #include <algorithm>
@@ -33,25 +33,29 @@ class BoxEdge {
     std::uint64_t word_;
 };
 
-// Takes boxes as long as there is room, then finds their edges by whole rows of the block. Lists are of all boxes, one after
-// the other, as a processor can guess where a long list ends and not where a short one does.
+// Takes boxes as long as there is room, then finds their edges by whole rows of the block. Lists are of all boxes, one
+// after the other, as a processor can guess where a long list ends and not where a short one does.
 class BoxEdges {
   public:
     // Edges of all boxes at most. As no lign of a box is crossed twice, even the largest one has no more.
     static constexpr std::size_t kRoom = 3 * Site::kRows;
-    // Kept edges: of one box at most, for the same reason; so many that no box is added any more; and of all boxes at most.
+    // Kept edges: of one box at most, for the same reason; so many that no box is added any more; and of all boxes at
+    // most.
     static constexpr std::size_t kMostOfBox = 6 * 2 * 32, kEnough = 768, kMostKept = kEnough + kMostOfBox;
     static constexpr std::size_t kMostBoxes = kEnough / 3;  // as each keeps three at least
 
     explicit BoxEdges(int block_size) {
-        const auto samples = static_cast<std::size_t>(block_size + 1), halves = std::size_t{block_size > DrawnSite::kHalf ? 2u : 1u};
+        const auto samples = static_cast<std::size_t>(block_size + 1),
+                   halves = std::size_t{block_size > DrawnSite::kHalf ? 2u : 1u};
         rows_.resize(kManyRows + halves * samples * samples + 1);
         rows_end_ = rows_.data();
         for (Array<BoxEdge>* edges : {&kept_, &dropped_}) edges->resize(kRoom + 1);
         clear();
     }
 
-    bool has_room(const HighRice& box) const { return ends_[size_].kept < kEnough && ligns_ + count_ligns(box) <= kRoom; }
+    bool has_room(const HighRice& box) const {
+        return ends_[size_].kept < kEnough && ligns_ + count_ligns(box) <= kRoom;
+    }
 
     // A disk box.
     void add(const DrawnSite& site, const HighRice& box) {
@@ -59,7 +63,8 @@ class BoxEdges {
         ligns_ += count_ligns(box);
         Ends& ends = ends_[size_ + 1] = ends_[size_];
         const int middle = DrawnSite::kHalf;
-        if (box.low[0] < middle) add(site, box, 0, std::min<int>(box.high[0], box.high[0] > middle ? middle - 1 : middle), ends);
+        if (box.low[0] < middle)
+            add(site, box, 0, std::min<int>(box.high[0], box.high[0] > middle ? middle - 1 : middle), ends);
         if (box.high[0] > middle) add(site, box, 1, box.high[0], ends);
         ++size_;
         if (rows_end_ > rows_.data() + kManyRows) find();
@@ -110,7 +115,8 @@ class BoxEdges {
     static constexpr std::array<Edge, 64> kSteps = [] {
         std::array<Edge, 64> steps{};
         for (int bit = 0; bit < 3 * kWindow; ++bit) {
-            steps[static_cast<std::size_t>(bit)] = Edge::along_x(static_cast<unsigned>(bit % kWindow), 0, 0).of_axis(bit / kWindow);
+            steps[static_cast<std::size_t>(bit)] =
+                Edge::along_x(static_cast<unsigned>(bit % kWindow), 0, 0).of_axis(bit / kWindow);
         }
         return steps;
     }();
@@ -127,7 +133,8 @@ class BoxEdges {
         std::array<bool, 3> owns_end;  // is there no box beyond?
         for (std::size_t a = 0; a < 3; ++a) owns_end[a] = box.high[a] == site.cells[a] && site.ends_grid[a];
         const int last_own = end == box.high[0] && !owns_end[0] ? end - 1 : end;
-        const Half along = up_to(std::min(end, box.high[0] - 1)), closed = up_to(end) << kWindow, own = up_to(last_own) << kWindow;
+        const Half along = up_to(std::min(end, box.high[0] - 1)), closed = up_to(end) << kWindow,
+                   own = up_to(last_own) << kWindow;
         // By whether the row is the box's last along z, and along y.
         using Masks = std::array<std::array<Half, 2>, 2>;
         const Masks kept{{{along | closed | closed << kWindow, along | closed << kWindow}, {along | closed, along}}};
@@ -137,13 +144,15 @@ class BoxEdges {
         Ends own_ends = ends;
         WordAdder<Row> add(rows_end_);
         const auto add_row = [&](const DrawnSite::Cut& cut, Half kept_here, Half dropped_here, BoxEdge first) {
-            const Half is_kept = cut.kept_halves[half] & kept_here, is_dropped = cut.dropped_halves[half] & dropped_here;
+            const Half is_kept = cut.kept_halves[half] & kept_here,
+                       is_dropped = cut.dropped_halves[half] & dropped_here;
             own_ends.kept += static_cast<std::uint32_t>(std::popcount(is_kept));
             own_ends.dropped += static_cast<std::uint32_t>(std::popcount(is_dropped));
             add(is_kept | is_dropped, {is_kept, first});
         };
         const auto rows = static_cast<unsigned>(box.length(1)), planes = static_cast<unsigned>(box.length(2));
-        const auto add_plane = [&](unsigned k, const std::array<Half, 2>& kept_here, const std::array<Half, 2>& dropped_here) {
+        const auto add_plane = [&](unsigned k, const std::array<Half, 2>& kept_here,
+                                   const std::array<Half, 2>& dropped_here) {
             const DrawnSite::Cut* cut = &site.cut(box.low[1], static_cast<int>(box.low[2] + k));
             BoxEdge first(Edge::along_x(static_cast<unsigned>(origin), box.low[1], box.low[2] + k), size_);
             for (unsigned j = 0; j < rows; ++j, ++cut, first = first.further(Edge::along_x(0, 1, 0))) {

@@ -88,7 +88,8 @@ class Climb {
     void partition() {
         const Gatherer<Sample> gatherer(samples_, signs_, options_);
         const bool bounded = std::isfinite(options_.max_error);
-        auto boxes = partition_bars(signs_, options_.block_size, options_.threads, bounded ? &gatherer : nullptr, layout_);
+        auto boxes =
+            partition_bars(signs_, options_.block_size, options_.threads, bounded ? &gatherer : nullptr, layout_);
         for (std::size_t n = 0; n < boxes.size(); ++n) static_cast<BarBoxes&>(bars_.bars[n]) = std::move(boxes[n]);
     }
 
@@ -103,12 +104,13 @@ class Climb {
                 std::size_t crossing = layout_.first_crossing(start, k);
                 Coordinate* out = mesh_.vertices.data() + 3 * layout_.vertex(crossing);
                 for (std::size_t j = start; j < std::min(start + layout_.strip, rows); ++j) {
-                    out = write_row_vertices(samples_, signs_, options_.isovalue, j, k, out, [&](auto axis, std::size_t w) {
-                        const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
-                        const std::size_t first = crossing;
-                        crossing += static_cast<std::size_t>(std::popcount(crossed));
-                        return layout_.kept(crossed, first);
-                    });
+                    out = write_row_vertices(samples_, signs_, options_.isovalue, j, k, out,
+                                             [&](auto axis, std::size_t w) {
+                                                 const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
+                                                 const std::size_t first = crossing;
+                                                 crossing += static_cast<std::size_t>(std::popcount(crossed));
+                                                 return layout_.kept(crossed, first);
+                                             });
                 }
             }
         });
@@ -116,8 +118,8 @@ class Climb {
 
     // Draws the bars that are stale, which are all of them at first.
     void draw() {
-        // A loop of n vertices gives n - 2 triangles, and a vertex lies on at most four boxes. Room that is not used is not
-        // touched.
+        // A loop of n vertices gives n - 2 triangles, and a vertex lies on at most four boxes. Room that is not used is
+        // not touched.
         std::size_t most = 4 * (mesh_.vertices.size() / 3);
         for (const Bar& bar : bars_.bars) most -= 2 * bar.highrices;
         mesh_.triangles.resize(3 * most);
@@ -148,7 +150,9 @@ class Climb {
             if (bars_.bars[n].stale) redrawn[n].emplace();
         }
         draw_stale([&](std::size_t n, const auto& draw_bar) {
-            draw_bar([&](std::span<const std::int32_t> part) { redrawn[n]->insert(redrawn[n]->end(), part.begin(), part.end()); });
+            draw_bar([&](std::span<const std::int32_t> part) {
+                redrawn[n]->insert(redrawn[n]->end(), part.begin(), part.end());
+            });
         });
         const std::size_t size = 3 * place_bars(bars_);
         mesh_.triangles.resize(std::max(mesh_.triangles.size(), size));
@@ -170,7 +174,8 @@ class Climb {
         make_room(late, mesh_.vertices);
         for (const LateVertex& vertex : late) {
             const auto& [i, j, k] = vertex.at;
-            write_vertex(samples_, signs_, options_.isovalue, vertex.axis, i, j, k, mesh_.vertices.data() + 3 * vertex.vertex);
+            write_vertex(samples_, signs_, options_.isovalue, vertex.axis, i, j, k,
+                         mesh_.vertices.data() + 3 * vertex.vertex);
         }
         parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) {
             const Bar& bar = bars_.bars[n];
@@ -187,15 +192,19 @@ class Climb {
     // Room is left for so large a share of vertices that late halvings may add: growing would need room twice.
     static constexpr std::size_t kLateShare = 16;
 
-    // Calls visit(number, draw_bar) for each bar that is stale, from any thread; draw_bar(put) draws it and calls put(triangles)
-    // for some after the other.
+    // Calls visit(number, draw_bar) for each bar that is stale, from any thread; draw_bar(put) draws it and calls
+    // put(triangles) for some after the other.
     template <class Visit>
     void draw_stale(const Visit& visit) {
         using AnyDrawer = Drawer<Sample, Coordinate>;
-        const auto make = [&] { return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data()); };
-        parallel_for(options_.threads, bars_.bars.size(), make, [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
-            if (bars_.bars[n].stale) visit(n, [&](const auto& put) { drawer->draw(bars_, n, bars_.bars[n], put); });
-        });
+        const auto make = [&] {
+            return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data());
+        };
+        parallel_for(options_.threads, bars_.bars.size(), make,
+                     [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
+                         if (bars_.bars[n].stale)
+                             visit(n, [&](const auto& put) { drawer->draw(bars_, n, bars_.bars[n], put); });
+                     });
     }
 
     GridView<Sample> samples_;
@@ -217,8 +226,7 @@ Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const S
     work.partition();
     work.number_and_place_vertices();
     work.draw();
-    while (work.split()) {
-    }
+    while (work.split()) {}
     return work.take();
 }
 

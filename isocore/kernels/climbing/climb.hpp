@@ -1,9 +1,10 @@
 // climb.hpp - Adaptive skeleton climbing: the public function.
 // samples: i fastest, at least 2 per axis. Returns vertices in index space, each bit for bit marching cubes' vertex of
-// its grid edge, ordered by the edge's lower row (j, k), then axis, then i; triangles ordered by block row and block, its
-// boxes before its single cells, counter-clockwise seen from outside. The surface has marching cubes' topology, component by
-// component. The same bytes for any number of threads. Throws std::invalid_argument for an axis shorter than 2 or a block size that is not
-// 1, 2, 4, 8, 16 or 32, and std::length_error if there are more vertices than an int32 can name.
+// its grid edge, ordered by the edge's lower row (j, k), then axis, then i; triangles ordered by block row and block,
+// its boxes before its single cells, counter-clockwise seen from outside. The surface has marching cubes' topology,
+// component by component. The same bytes for any number of threads. Throws std::invalid_argument for an axis shorter
+// than 2 or a block size that is not 1, 2, 4, 8, 16 or 32, and std::length_error if there are more vertices than an
+// int32 can name.
 #pragma once
 
 #include <array>
@@ -39,8 +40,8 @@ struct Facts {
     std::size_t highrices = 0;
     std::size_t blocks = 0, blocks_visited = 0;  // visited: samples on both sides
     std::size_t ambiguous_faces = 0, ambiguous_cells = 0;
-    std::size_t crossings = 0;       // vertices of marching cubes
-    std::size_t split_again = 0;     // boxes that broke the error bound after meshing
+    std::size_t crossings = 0;    // vertices of marching cubes
+    std::size_t split_again = 0;  // boxes that broke the error bound after meshing
     Deviation in_voxels, in_world;
 };
 

@@ -1,5 +1,5 @@
-// cloud.hpp - The crossings of a block as points, and the clouds of its boxes, one filtered from the other. All are relative
-// to the block and in the unit of the error bound.
+// cloud.hpp - The crossings of a block as points, and the clouds of its boxes, one filtered from the other. All are
+// relative to the block and in the unit of the error bound.
 #pragma once
 
 #include <algorithm>
@@ -29,16 +29,18 @@ using Numbers = Lanes<float>;
 
 // The lanes of a cloud from n on that lie in a closed box.
 inline LaneMask<float> within(const Extent& box, const Numbers& x, const Numbers& y, const Numbers& z) {
-    return (Numbers(box.low[0]) <= x) & (x <= box.high[0]) & (Numbers(box.low[1]) <= y) & (y <= box.high[1]) & (Numbers(box.low[2]) <= z) &
-           (z <= box.high[2]);
+    return (Numbers(box.low[0]) <= x) & (x <= box.high[0]) & (Numbers(box.low[1]) <= y) & (y <= box.high[1]) &
+           (Numbers(box.low[2]) <= z) & (z <= box.high[2]);
 }
 
 // A stack of clouds: of a block, of one of its halves, of one of that one's halves, and so on.
 class Clouds {
   public:
-    // Room for as many as any block of that size can need is made once: pushing must never move what lies below. Most of it
-    // is never touched, and so takes no memory.
-    explicit Clouds(int block_size) : block_size_(block_size) { numbers_.resize(3 * room(std::numeric_limits<std::size_t>::max())); }
+    // Room for as many as any block of that size can need is made once: pushing must never move what lies below. Most
+    // of it is never touched, and so takes no memory.
+    explicit Clouds(int block_size) : block_size_(block_size) {
+        numbers_.resize(3 * room(std::numeric_limits<std::size_t>::max()));
+    }
     // Goes to a block with so many crossings.
     void begin(std::size_t crossings) {
         start_ = top_ = 0;
@@ -84,13 +86,15 @@ class Clouds {
     std::size_t room(std::size_t crossings) const {
         constexpr std::size_t kMost = 6;  // lengths are 1, 2, 4, ... 32
         const auto within = [&](std::size_t a, std::size_t b, std::size_t c) {
-            return std::min(crossings, a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1)) + 2 * kLanes<float>;
+            return std::min(crossings, a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1)) +
+                   2 * kLanes<float>;
         };
         std::array<std::array<std::array<std::size_t, kMost>, kMost>, kMost> rooms;
         for (std::size_t x = 0; x < kMost; ++x) {
             for (std::size_t y = 0; y < kMost; ++y) {
                 for (std::size_t z = 0; z < kMost; ++z) {
-                    const std::size_t half = std::max({x > 0 ? rooms[x - 1][y][z] : 0, y > 0 ? rooms[x][y - 1][z] : 0, z > 0 ? rooms[x][y][z - 1] : 0});
+                    const std::size_t half = std::max({x > 0 ? rooms[x - 1][y][z] : 0, y > 0 ? rooms[x][y - 1][z] : 0,
+                                                       z > 0 ? rooms[x][y][z - 1] : 0});
                     rooms[x][y][z] = within(std::size_t{1} << x, std::size_t{1} << y, std::size_t{1} << z) + half;
                 }
             }
@@ -101,8 +105,8 @@ class Clouds {
 
     int block_size_;
     Array<float> numbers_;
-    std::size_t planned_ = 0;              // no block has as many crossings
-    std::array<float*, 3> places_{};       // within the numbers
+    std::size_t planned_ = 0;         // no block has as many crossings
+    std::array<float*, 3> places_{};  // within the numbers
     std::size_t start_ = 0, top_ = 0;
 };
 

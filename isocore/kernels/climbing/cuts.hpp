@@ -1,5 +1,5 @@
-// cuts.hpp - Where the edges of a block's highrices run: a bit for every grid edge, which is what the layout keeps if it
-// is crossed.
+// cuts.hpp - Where the edges of a block's highrices run: a bit for every grid edge, which is what the layout keeps if
+// it is crossed.
 #pragma once
 
 #include <array>
@@ -18,8 +18,10 @@ class Cuts {
     void clear() { rows_ = {}; }
 
     void add(const HighRice& box) {
-        const int x0 = box.low[0], x1 = box.high[0], y0 = box.low[1], y1 = box.high[1], z0 = box.low[2], z1 = box.high[2];
-        const std::uint64_t along = (std::uint64_t{1} << x1) - (std::uint64_t{1} << x0), ends = std::uint64_t{1} << x0 | std::uint64_t{1} << x1;
+        const int x0 = box.low[0], x1 = box.high[0], y0 = box.low[1], y1 = box.high[1], z0 = box.low[2],
+                  z1 = box.high[2];
+        const std::uint64_t along = (std::uint64_t{1} << x1) - (std::uint64_t{1} << x0),
+                            ends = std::uint64_t{1} << x0 | std::uint64_t{1} << x1;
         for (const int k : {z0, z1}) {
             for (const int j : {y0, y1}) at(j, k)[0] |= along;
             for (int j = y0; j < y1; ++j) at(j, k)[1] |= ends;
@@ -44,7 +46,8 @@ class Cuts {
             std::uint64_t crossed, cut;
             std::size_t first;
         };
-        std::array<Part, 3 * (N + 1) * (N + 1) + 1> parts;  // those where anything is to be kept, found without a branch for each
+        std::array<Part, 3 * (N + 1) * (N + 1) + 1>
+            parts;  // those where anything is to be kept, found without a branch for each
         Part* end = parts.data();
         for (const Edge& start : site.crossed_rows()) {
             const int j = start.at(1), k = start.at(2);
@@ -59,7 +62,8 @@ class Cuts {
     static std::size_t index(int j, int k) { return static_cast<std::size_t>(j + (N + 1) * k); }
     std::array<std::uint64_t, 3>& at(int j, int k) { return rows_[index(j, k)]; }
 
-    std::array<std::array<std::uint64_t, 3>, (N + 1) * (N + 1)> rows_;  // edges along each axis that start in row (j, k)
+    std::array<std::array<std::uint64_t, 3>, (N + 1) * (N + 1)>
+        rows_;  // edges along each axis that start in row (j, k)
 };
 
 }  // namespace isocore::climbing

@@ -51,7 +51,8 @@ struct DikeBits {
     static constexpr std::array<std::uint8_t, 2 * N> kBits = [] {
         std::array<std::uint8_t, 2 * N> bits{};
         for (Label label = 1; label < 2 * N; ++label) {
-            bits[label] = static_cast<std::uint8_t>(Dike<N>::is_unit(label) ? static_cast<int>(label) : Dike<N>::start(label) + Dike<N>::length(label) / 2);
+            bits[label] = static_cast<std::uint8_t>(
+                Dike<N>::is_unit(label) ? static_cast<int>(label) : Dike<N>::start(label) + Dike<N>::length(label) / 2);
         }
         return bits;
     }();
@@ -67,7 +68,8 @@ struct DikeBits {
     }
     template <int half, int at_end>
     ISOCORE_INLINED static Word shifted(Word marked) {
-        if constexpr (half < N) return (marked >> 2 * half * at_end & starts(2 * half)) << half | shifted<2 * half, at_end>(marked);
+        if constexpr (half < N)
+            return (marked >> 2 * half * at_end & starts(2 * half)) << half | shifted<2 * half, at_end>(marked);
         return 0;
     }
     template <int half>
@@ -80,9 +82,13 @@ struct DikeBits {
     }
     template <int length, int upper>
     ISOCORE_INLINED static Word halves(Word marked) {
-        if constexpr (length > N) return 0;
-        else if constexpr (length == 2) return (marked >> (N - 1) >> upper & starts(2) << 1) | halves<4, upper>(marked);
-        else return ((upper ? marked >> length / 4 : marked << length / 4) & starts(length) << length / 2) | halves<2 * length, upper>(marked);
+        if constexpr (length > N)
+            return 0;
+        else if constexpr (length == 2)
+            return (marked >> (N - 1) >> upper & starts(2) << 1) | halves<4, upper>(marked);
+        else
+            return ((upper ? marked >> length / 4 : marked << length / 4) & starts(length) << length / 2) |
+                   halves<2 * length, upper>(marked);
     }
     ISOCORE_INLINED static Word units(Word marked) { return static_cast<Word>((marked & kUnits) << (N - 1) << 1); }
     // Samples at which dikes of a length start.

@@ -26,13 +26,17 @@ template <class Sample, class Coordinate>
 class Disks {
   public:
     Disks(const GridView<Sample>& samples, const SignGrid& signs, const Options& options, const Coordinate* vertices)
-        : signs_(signs), options_(options), vertices_(vertices), edges_(options.block_size), ruler_(samples, signs, options) {}
+        : signs_(signs),
+          options_(options),
+          vertices_(vertices),
+          edges_(options.block_size),
+          ruler_(samples, signs, options) {}
 
     // Before the first block of a bar.
     void begin_bar() { drawn_ = 0; }
 
-    // Those of the block that the site has loaded; blocks come in their order in the bar. Triangles of shorter loops come
-    // first.
+    // Those of the block that the site has loaded; blocks come in their order in the bar. Triangles of shorter loops
+    // come first.
     void draw(const DrawnSite& site, std::span<const Piece> pieces, TriangleList& out, Bar& bar) {
         for (const Piece& piece : pieces) {
             const HighRice box = piece.within(site.cells);
@@ -62,8 +66,11 @@ class Disks {
             const std::size_t list = std::min(edges_.first_kept(n + 1) - edges_.first_kept(n), kLongestOfSeveral + 1);
             by_length_[list][sizes_[list]++] = static_cast<std::uint8_t>(n);
         }
-        [&]<std::size_t... n>(std::index_sequence<n...>) { (draw_short<n + 3>(site, out, bar), ...); }(std::make_index_sequence<kLongestOfSeveral - 2>{});
-        for (std::size_t n = 0; n < sizes_[kLongestOfSeveral + 1]; ++n) draw_long(site, by_length_[kLongestOfSeveral + 1][n], out, bar);
+        [&]<std::size_t... n>(std::index_sequence<n...>) {
+            (draw_short<n + 3>(site, out, bar), ...);
+        }(std::make_index_sequence<kLongestOfSeveral - 2>{});
+        for (std::size_t n = 0; n < sizes_[kLongestOfSeveral + 1]; ++n)
+            draw_long(site, by_length_[kLongestOfSeveral + 1][n], out, bar);
         if (options_.measured) ruler_.measure(bar);
         drawn_ += edges_.size();
         edges_.clear();
@@ -82,13 +89,16 @@ class Disks {
     // Where numbers of a box are small when taken from.
     std::array<Coordinate, 3> origin(const DrawnSite& site, std::size_t box) const {
         std::array<Coordinate, 3> out;
-        for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<Coordinate>(site.origin[a] + edges_.box(box).low[a]) - static_cast<Coordinate>(signs_.pad);
+        for (std::size_t a = 0; a < 3; ++a)
+            out[a] =
+                static_cast<Coordinate>(site.origin[a] + edges_.box(box).low[a]) - static_cast<Coordinate>(signs_.pad);
         return out;
     }
 
     // Calls set(place, faces, vertex) for the n-th of all kept edges.
     template <class Set>
-    void set_corner(const DrawnSite& site, std::size_t n, const std::array<Coordinate, 3>& origin, const Set& set) const {
+    void set_corner(const DrawnSite& site, std::size_t n, const std::array<Coordinate, 3>& origin,
+                    const Set& set) const {
         const Edge edge = edges_.kept()[n].edge();
         const std::int32_t number = site.vertex(edge.axis(), edge.at());
         const Coordinate* place = vertices_ + 3 * static_cast<std::size_t>(number);
@@ -122,7 +132,8 @@ class Disks {
                     for (const std::size_t corner : triangle) *vertices++ = polygons.vertex(n, corner);
                 }
                 measure(boxes[start + n], polygons.kTriangles, bar, [&](auto add) {
-                    for (const auto& [a, b, c] : triangles) add(polygons.place(n, a), polygons.place(n, b), polygons.place(n, c));
+                    for (const auto& [a, b, c] : triangles)
+                        add(polygons.place(n, a), polygons.place(n, b), polygons.place(n, c));
                 });
             }
             out.end_at(vertices);
@@ -154,10 +165,13 @@ class Disks {
         const std::size_t first = edges_.first_kept(box), size = edges_.first_kept(box + 1) - first;
         const auto from = origin(site, box);
         polygon_.resize(size);
-        for (std::size_t e = 0; e < size; ++e) order_[e] = {loops_.place(first + e), static_cast<std::uint32_t>(first + e)};
+        for (std::size_t e = 0; e < size; ++e)
+            order_[e] = {loops_.place(first + e), static_cast<std::uint32_t>(first + e)};
         std::sort(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(size));
         for (std::size_t e = 0; e < size; ++e) {
-            set_corner(site, order_[e].second, from, [&](const Spot& place, unsigned faces, std::int32_t vertex) { polygon_.set(e, place, faces, vertex); });
+            set_corner(site, order_[e].second, from, [&](const Spot& place, unsigned faces, std::int32_t vertex) {
+                polygon_.set(e, place, faces, vertex);
+            });
         }
         const auto triangles = polygon_.cut();
         std::int32_t* vertices = out.room_for(triangles.size());

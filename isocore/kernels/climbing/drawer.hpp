@@ -21,7 +21,8 @@ namespace isocore::climbing {
 template <class Sample, class Coordinate>
 class Drawer {
   public:
-    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const Layout& layout, const Options& options, const Coordinate* vertices)
+    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const Layout& layout, const Options& options,
+           const Coordinate* vertices)
         : samples_(samples),
           signs_(signs),
           layout_(layout),
@@ -30,7 +31,8 @@ class Drawer {
           rices_(options.block_size),
           disks_(samples, signs, options, vertices) {}
 
-    // Calls put(triangles) for some of a bar's triangles after the other; boxes that break the bound are noted in bar.broken.
+    // Calls put(triangles) for some of a bar's triangles after the other; boxes that break the bound are noted in
+    // bar.broken.
     template <class Put>
     void draw(const Bars& bars, std::size_t number, Bar& bar, const Put& put) {
         bar.triangles = 0;
@@ -65,26 +67,33 @@ class Drawer {
         std::int32_t* out = triangles_.room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
         for (std::uint64_t left = cells; left; left &= left - 1) {
             const int x = std::countr_zero(left);
-            const auto pair = [&](int right, int up) { return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3); };
+            const auto pair = [&](int right, int up) {
+                return static_cast<unsigned>(site_.row(j + right, k + up).signs >> x & 3);
+            };
             const unsigned corners = pair(0, 0) | pair(1, 0) << 2 | pair(0, 1) << 4 | pair(1, 1) << 6;
             const auto& entry = cell_loops::kTable.corners[corners];
             unsigned decisions = 0;
             if (entry.ambiguous) {
-                const Dims cell{site_.origin[0] + static_cast<std::size_t>(x), site_.origin[1] + static_cast<std::size_t>(j), site_.origin[2] + static_cast<std::size_t>(k)};
+                const Dims cell{site_.origin[0] + static_cast<std::size_t>(x),
+                                site_.origin[1] + static_cast<std::size_t>(j),
+                                site_.origin[2] + static_cast<std::size_t>(k)};
                 decisions = decide_faces(samples_, signs_.pad, options_.isovalue, corners, cell);
                 ++bar.ambiguous_cells;
                 bar.ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
             }
-            const auto numbers = edge_numbers(site_.cut(j, k), site_.cut(j + 1, k), site_.cut(j, k + 1), site_.cut(j + 1, k + 1), x);
+            const auto numbers =
+                edge_numbers(site_.cut(j, k), site_.cut(j + 1, k), site_.cut(j, k + 1), site_.cut(j + 1, k + 1), x);
             const auto& drawn = cell_loops::kTable.cases[entry.first + decisions];
-            for (unsigned n = 0; n < 3u * drawn.triangles; ++n) *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
+            for (unsigned n = 0; n < 3u * drawn.triangles; ++n)
+                *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
         }
         triangles_.end_at(out);
     }
 
     // The vertices on a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
     using Cut = DrawnSite::Cut;
-    static std::array<std::uint32_t, 12> edge_numbers(const Cut& row, const Cut& right, const Cut& up, const Cut& far, int x) {
+    static std::array<std::uint32_t, 12> edge_numbers(const Cut& row, const Cut& right, const Cut& up, const Cut& far,
+                                                      int x) {
         const std::uint64_t before = (std::uint64_t{1} << x) - 1;
         const auto number = [&](const Cut& from, std::size_t axis) {
             return from.first_vertex[axis] + static_cast<std::uint32_t>(std::popcount(from.kept[axis] & before));

@@ -12,8 +12,8 @@ namespace isocore::climbing {
 
 class DrawnSite : public Site {
   public:
-    // Edges that start in half a row, at samples 0 ... 20 or 16 ... 36, side by side: those along x, along y, along z. A
-    // box lies in either half of a row, unless it is longer than a half.
+    // Edges that start in half a row, at samples 0 ... 20 or 16 ... 36, side by side: those along x, along y, along z.
+    // A box lies in either half of a row, unless it is longer than a half.
     using Half = std::uint64_t;
     static constexpr int kWindow = 21, kHalf = 16;
 
@@ -33,7 +33,8 @@ class DrawnSite : public Site {
         Site::begin(signs, layout, y, z);
         for_rows([&](int j, int k) {
             const std::size_t row = row_index(j, k);
-            for (std::size_t axis = 0; axis < 3; ++axis) next_vertices_[row][axis] = static_cast<std::uint32_t>(layout.vertex(next_crossings_[row][axis]));
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                next_vertices_[row][axis] = static_cast<std::uint32_t>(layout.vertex(next_crossings_[row][axis]));
         });
     }
 
@@ -50,7 +51,9 @@ class DrawnSite : public Site {
             out.first_vertex[axis] = next_vertices_[row][axis];
             next_vertices_[row][axis] += ones(kept & own);
             for (std::size_t half = 0; half <= static_cast<std::size_t>(cells[0] > kHalf); ++half) {
-                const auto window = [&](std::uint64_t edges) { return (edges >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis; };
+                const auto window = [&](std::uint64_t edges) {
+                    return (edges >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis;
+                };
                 out.kept_halves[half] |= window(kept);
                 out.dropped_halves[half] |= window(crossed ^ kept);
             }
@@ -62,7 +65,8 @@ class DrawnSite : public Site {
     // The number of a kept edge.
     std::int32_t vertex(std::size_t axis, const Place& at) const {
         const Cut& here = cut(at[1], at[2]);
-        return static_cast<std::int32_t>(here.first_vertex[axis] + ones(here.kept[axis] & ((std::uint64_t{1} << at[0]) - 1)));
+        return static_cast<std::int32_t>(here.first_vertex[axis] +
+                                         ones(here.kept[axis] & ((std::uint64_t{1} << at[0]) - 1)));
     }
 
   private:

@@ -33,7 +33,9 @@ class Edge {
 
       private:
         friend class Edge;
-        static std::uint32_t word(const std::array<std::uint8_t, 3>& end) { return end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16; }
+        static std::uint32_t word(const std::array<std::uint8_t, 3>& end) {
+            return end[0] | std::uint32_t{end[1]} << 8 | std::uint32_t{end[2]} << 16;
+        }
         std::uint32_t low_, high_;
     };
     // The faces of a box that it lies on, a bit each.

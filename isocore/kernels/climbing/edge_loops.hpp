@@ -1,8 +1,8 @@
 // edge_loops.hpp - The loops that the surface draws on highrices, through the kept edges on their faces.
 //
 // A face is shared with one highrice or several; the rectangle shared with each is a padi. All its ligns are simple, so
-// one iso-line crosses it, and the iso-lines of a whole face form one path from rim to rim, which no lign meets twice: so
-// it runs one way along both axes, and the kept edges in the face come in the order of how far they are that way.
+// one iso-line crosses it, and the iso-lines of a whole face form one path from rim to rim, which no lign meets twice:
+// so it runs one way along both axes, and the kept edges in the face come in the order of how far they are that way.
 #pragma once
 
 #include <array>
@@ -36,7 +36,8 @@ class EdgeLoops {
         }
         for (std::size_t n = 0; n < edges.size(); ++n) {
             const std::size_t first = edges.first_kept(n), size = edges.first_kept(n + 1) - first;
-            if (static_cast<std::size_t>(std::popcount(boxes_[n].visited)) < size) go_on_in_faces(kept.subspan(first, size), first, (*boxes_[n].stops)[kLength]);
+            if (static_cast<std::size_t>(std::popcount(boxes_[n].visited)) < size)
+                go_on_in_faces(kept.subspan(first, size), first, (*boxes_[n].stops)[kLength]);
         }
     }
 
@@ -47,8 +48,8 @@ class EdgeLoops {
   private:
     static constexpr float kStep = 1 << 16;  // more than any distance along a face
 
-    // Stops of a loop: its rim edges and, between them, its faces. By corner signs; edges first, then faces, then how many
-    // rim edges there are.
+    // Stops of a loop: its rim edges and, between them, its faces. By corner signs; edges first, then faces, then how
+    // many rim edges there are.
     static constexpr std::size_t kLength = 18;
     using Stops = std::array<std::uint8_t, kLength + 1>;
     static constexpr std::array<Stops, 256> kStops = [] {

@@ -14,8 +14,8 @@
 
 namespace isocore::climbing {
 
-// A Rim, a lane for each edge: its axis, whether it is at the high end along each other, and the axis of the face between
-// it and the next.
+// A Rim, a lane for each edge: its axis, whether it is at the high end along each other, and the axis of the face
+// between it and the next.
 struct RimLanes {
     using Row = std::array<float, kLanes<float>>;
     Row axes{}, face_axes{};
@@ -30,7 +30,8 @@ inline constexpr std::array<RimLanes, 256> kRimLanes = [] {
             const int edge = rim.edges[here];
             lanes[signs].axes[n] = static_cast<float>(edge / 4);
             lanes[signs].face_axes[n] = static_cast<float>(rim.faces[here] / 2);
-            for (std::size_t a = 0; a < 3; ++a) lanes[signs].high[a][n] = static_cast<float>(cube::low_corner(edge) >> a & 1);
+            for (std::size_t a = 0; a < 3; ++a)
+                lanes[signs].high[a][n] = static_cast<float>(cube::low_corner(edge) >> a & 1);
         }
     }
     return lanes;
@@ -38,7 +39,8 @@ inline constexpr std::array<RimLanes, 256> kRimLanes = [] {
 
 class Flatness {
   public:
-    // The crossings on a box's edges, in the order of its Rim, then the first again: where each is along its edge's axis.
+    // The crossings on a box's edges, in the order of its Rim, then the first again: where each is along its edge's
+    // axis.
     using Ring = std::array<float, kLanes<float>>;
 
     explicit Flatness(double max_error) : max_error_(kMargin * static_cast<float>(max_error)) {}
@@ -50,7 +52,8 @@ class Flatness {
         const Spot first{corners[0].first(), corners[1].first(), corners[2].first()};
         const auto normals = cross(minus(corners, {first[0], first[1], first[2]}), minus(next, corners));
         Spot normal{normals[0].sum(), normals[1].sum(), normals[2].sum()};
-        return normalise(normal) && in_slab(around, box, corners, first, normal) && near_chords(around, box, corners, next, signs);
+        return normalise(normal) && in_slab(around, box, corners, first, normal) &&
+               near_chords(around, box, corners, next, signs);
     }
 
   private:
@@ -84,7 +87,8 @@ class Flatness {
         }
     }
 
-    bool in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners, const Spot& first, Spot normal) const {
+    bool in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners, const Spot& first,
+                 Spot normal) const {
         const Numbers heights = over(normal, corners[0], corners[1], corners[2]);
         if (heights.greatest_lane() - heights.least_lane() > kWorthFitting * max_error_) return false;
         const float thickness = width(around, box, normal);
@@ -95,7 +99,8 @@ class Flatness {
 
     // The thickness of the slab across `normal` that holds all crossings in the box.
     static float width(const Cloud& around, const Extent& box, const Spot& normal) {
-        const Numbers infinity(std::numeric_limits<float>::infinity()), minus_infinity(-std::numeric_limits<float>::infinity());
+        const Numbers infinity(std::numeric_limits<float>::infinity()),
+            minus_infinity(-std::numeric_limits<float>::infinity());
         Numbers low = infinity, high = minus_infinity;
         each(around, [&](const Numbers& x, const Numbers& y, const Numbers& z) {
             const auto here = within(box, x, y, z);
@@ -105,7 +110,9 @@ class Flatness {
         });
         return high.greatest_lane() - low.least_lane();
     }
-    static Numbers over(const Spot& normal, const Numbers& x, const Numbers& y, const Numbers& z) { return x * normal[0] + y * normal[1] + z * normal[2]; }
+    static Numbers over(const Spot& normal, const Numbers& x, const Numbers& y, const Numbers& z) {
+        return x * normal[0] + y * normal[1] + z * normal[2];
+    }
 
     // Turns the normal to that of the least-squares plane of heights over the plane across the old one.
     static bool fit(const Cloud& around, const Extent& box, const Spot& origin, Spot& normal) {
@@ -124,7 +131,8 @@ class Flatness {
         each(around, [&](const Numbers& x, const Numbers& y, const Numbers& z) {
             const auto here = within(box, x, y, z);
             const auto along = [&](const Spot& axis) {
-                return choose(here, (x - origin[0]) * axis[0] + (y - origin[1]) * axis[1] + (z - origin[2]) * axis[2], zero);
+                return choose(here, (x - origin[0]) * axis[0] + (y - origin[1]) * axis[1] + (z - origin[2]) * axis[2],
+                              zero);
             };
             const Numbers a = along(u), b = along(v), h = along(normal);
             const std::array<Numbers, 9> parts{choose(here, one, zero), a, b, h, a * a, a * b, b * b, a * h, b * h};
@@ -135,7 +143,8 @@ class Flatness {
             for (const float lane : sums[n].each()) sum[n] += lane;
         }
         const float a = sum[1] / sum[0], b = sum[2] / sum[0], h = sum[3] / sum[0];
-        const float aa = sum[4] - sum[1] * a, ab = sum[5] - sum[1] * b, bb = sum[6] - sum[2] * b, ah = sum[7] - sum[1] * h, bh = sum[8] - sum[2] * h;
+        const float aa = sum[4] - sum[1] * a, ab = sum[5] - sum[1] * b, bb = sum[6] - sum[2] * b,
+                    ah = sum[7] - sum[1] * h, bh = sum[8] - sum[2] * h;
         const float determinant = aa * bb - ab * ab;
         if (!(determinant > 1e-5f * aa * bb)) return false;
         const float along_u = (ah * bb - bh * ab) / determinant, along_v = (bh * aa - ah * ab) / determinant;
@@ -145,23 +154,28 @@ class Flatness {
 
     // Does every crossing on a face lie near the line through the two on the face's rim? (Between those two, as the
     // iso-lines of a face run one way along both axes.)
-    bool near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from, const Vector<Numbers>& to, unsigned signs) const {
+    bool near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from, const Vector<Numbers>& to,
+                     unsigned signs) const {
         const Rim& rim = kRims[signs];
         // The normals of the chords within their faces, not to scale.
         const auto along = minus(to, from);
         const Numbers zero(0.0f), axis(kRimLanes[signs].face_axes.data());
         const auto x = axis == 0.0f, y = axis == 1.0f;
-        const Vector<Numbers> normals{choose(x, zero, choose(y, along[2], along[1])), choose(y, zero, choose(x, along[2], zero - along[0])),
+        const Vector<Numbers> normals{choose(x, zero, choose(y, along[2], along[1])),
+                                      choose(y, zero, choose(x, along[2], zero - along[0])),
                                       choose(x, zero - along[1], choose(y, zero - along[0], zero))};
         const auto normals_x = normals[0].each(), normals_y = normals[1].each(), normals_z = normals[2].each();
-        const auto heights = dot(normals, from).each(), limits = (dot(normals, normals) * (max_error_ * max_error_)).each();
+        const auto heights = dot(normals, from).each(),
+                   limits = (dot(normals, normals) * (max_error_ * max_error_)).each();
         auto far = zero < zero;
         for (std::size_t n = 0; n < around.lanes; n += kLanes<float>) {
-            const Vector<Numbers> spots{Numbers(around.axes[0] + n), Numbers(around.axes[1] + n), Numbers(around.axes[2] + n)};
+            const Vector<Numbers> spots{Numbers(around.axes[0] + n), Numbers(around.axes[1] + n),
+                                        Numbers(around.axes[2] + n)};
             const auto here = within(box, spots[0], spots[1], spots[2]);
             for (std::size_t c = 0; c < rim.length; ++c) {
                 const unsigned face = rim.faces[c];
-                const Numbers off = over({normals_x[c], normals_y[c], normals_z[c]}, spots[0], spots[1], spots[2]) - heights[c];
+                const Numbers off =
+                    over({normals_x[c], normals_y[c], normals_z[c]}, spots[0], spots[1], spots[2]) - heights[c];
                 const auto on_face = Numbers(around.axes[face / 2] + n) == (face & 1 ? box.high : box.low)[face / 2];
                 far = far | (here & on_face & (Numbers(limits[c]) < off * off));
             }

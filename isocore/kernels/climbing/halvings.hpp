@@ -1,5 +1,5 @@
-// halvings.hpp - How the blocks of a bar were halved down to highrices, in three to five bits a halving: boxes would take
-// four bytes each.
+// halvings.hpp - How the blocks of a bar were halved down to highrices, in three to five bits a halving: boxes would
+// take four bytes each.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +14,16 @@
 
 namespace isocore::climbing {
 
-// What halving a block leads to, down to single cells; it may reach past the volume's end. In one word: a byte for each low
-// end and for each length, a bit for each axis along which it can be halved, and how often that can be done.
+// What halving a block leads to, down to single cells; it may reach past the volume's end. In one word: a byte for each
+// low end and for each length, a bit for each axis along which it can be halved, and how often that can be done.
 class Piece {
   public:
     Piece() = default;
     static Piece block(int size) {
-        const auto length = static_cast<std::uint64_t>(size), depth = static_cast<std::uint64_t>(std::countr_zero(length));
-        return Piece((length | length << 8 | length << 16) << kLengths | std::uint64_t{size > 1 ? 7u : 0u} << kAxes | 3 * depth << kDepth);
+        const auto length = static_cast<std::uint64_t>(size),
+                   depth = static_cast<std::uint64_t>(std::countr_zero(length));
+        return Piece((length | length << 8 | length << 16) << kLengths | std::uint64_t{size > 1 ? 7u : 0u} << kAxes |
+                     3 * depth << kDepth);
     }
 
     int low(unsigned axis) const { return static_cast<int>(word_ >> 8 * axis & 255); }
@@ -56,8 +58,10 @@ struct Piece::Halves {
 
 inline Piece::Halves Piece::halves(unsigned axis) const {
     const unsigned byte = 8 * axis;
-    const std::uint64_t half = (word_ >> (kLengths + byte) & 255) / 2, is_last = half & 1;  // all lengths are powers of two
-    const std::uint64_t lower = word_ - (half << (kLengths + byte)) - (is_last << (kAxes + axis)) - (std::uint64_t{1} << kDepth);
+    const std::uint64_t half = (word_ >> (kLengths + byte) & 255) / 2,
+                        is_last = half & 1;  // all lengths are powers of two
+    const std::uint64_t lower =
+        word_ - (half << (kLengths + byte)) - (is_last << (kAxes + axis)) - (std::uint64_t{1} << kDepth);
     return {Piece(lower), Piece(lower + (half << byte))};
 }
 
@@ -70,8 +74,8 @@ struct Halving {
     Fate lower = Fate::nothing, upper = Fate::nothing;
 };
 
-// Up to two bits tell along which axis, where there is a choice, and three what becomes of the halves: at least one of them
-// holds something. Cells take nothing, as their corners show what they hold.
+// Up to two bits tell along which axis, where there is a choice, and three what becomes of the halves: at least one of
+// them holds something. Cells take nothing, as their corners show what they hold.
 struct HalvingCode {
     static constexpr unsigned kLongest = 5;
     struct Word {
@@ -86,33 +90,40 @@ struct HalvingCode {
 
     constexpr HalvingCode() {
         for (unsigned axes = 1; axes < 8; ++axes) {
-            const auto first = static_cast<unsigned>(std::countr_zero(axes)), last = static_cast<unsigned>(std::bit_width(axes) - 1);
-            if (first == last) set(axes, first, {0, 0});
-            else if (axes != 7) set(axes, first, {0, 1}), set(axes, last, {1, 1});
-            else set(axes, 0, {0, 1}), set(axes, 1, {1, 2}), set(axes, 2, {3, 2});
+            const auto first = static_cast<unsigned>(std::countr_zero(axes)),
+                       last = static_cast<unsigned>(std::bit_width(axes) - 1);
+            if (first == last)
+                set(axes, first, {0, 0});
+            else if (axes != 7)
+                set(axes, first, {0, 1}), set(axes, last, {1, 1});
+            else
+                set(axes, 0, {0, 1}), set(axes, 1, {1, 2}), set(axes, 2, {3, 2});
         }
     }
 
     constexpr Word word(unsigned axes, const Halving& halving) const {
         const unsigned fates = static_cast<unsigned>(halving.lower) + 3 * static_cast<unsigned>(halving.upper) - 1;
         const Word axis = of_axes[axes][halving.axis];
-        return {static_cast<std::uint8_t>(axis.bits | fates << axis.length), static_cast<std::uint8_t>(axis.length + 3)};
+        return {static_cast<std::uint8_t>(axis.bits | fates << axis.length),
+                static_cast<std::uint8_t>(axis.length + 3)};
     }
 
   private:
     constexpr void set(unsigned axes, unsigned axis, const Word& of_axis) {
         of_axes[axes][axis] = of_axis;
         for (unsigned fates = 1; fates < 9; ++fates) {
-            const Halving halving{static_cast<std::uint8_t>(axis), static_cast<Fate>(fates % 3), static_cast<Fate>(fates / 3)};
+            const Halving halving{static_cast<std::uint8_t>(axis), static_cast<Fate>(fates % 3),
+                                  static_cast<Fate>(fates / 3)};
             const Word own = word(axes, halving);
-            for (unsigned next = own.bits; next < 1u << kLongest; next += 1u << own.length) entries[axes][next] = {halving, own.length};
+            for (unsigned next = own.bits; next < 1u << kLongest; next += 1u << own.length)
+                entries[axes][next] = {halving, own.length};
         }
     }
 };
 inline constexpr HalvingCode kHalvingCode;
 
-// Of all pieces of several cells that are halved, but for those of two, whose halves are cells: each before those of its
-// lower half, and these before those of its upper half.
+// Of all pieces of several cells that are halved, but for those of two, whose halves are cells: each before those of
+// its lower half, and these before those of its upper half.
 class Halvings {
   public:
     void add_block(Fate fate) { append(static_cast<std::uint64_t>(fate), 2); }

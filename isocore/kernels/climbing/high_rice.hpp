@@ -44,8 +44,8 @@ inline constexpr std::array<std::uint8_t, 12> kFacesOfEdge = [] {
     return faces;
 }();
 
-// The loop that the surface draws on a disk box: its crossed edges in order, and the face between each and the next. Past
-// its length the first edge is repeated.
+// The loop that the surface draws on a disk box: its crossed edges in order, and the face between each and the next.
+// Past its length the first edge is repeated.
 struct Rim {
     std::uint8_t length = 0;
     std::array<std::uint8_t, 6> edges{}, faces{};

@@ -1,5 +1,5 @@
-// in_order.hpp - Bars are drawn by several threads and come out in their order, without gaps. A thread waits only if it is so
-// far ahead of another, which has lost its core perhaps, that what it draws would fill the memory.
+// in_order.hpp - Bars are drawn by several threads and come out in their order, without gaps. A thread waits only if it
+// is so far ahead of another, which has lost its core perhaps, that what it draws would fill the memory.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,10 @@ namespace isocore::climbing {
 
 class InOrder {
   public:
-    // Of `count` bars, begun in their order; all their triangles fit into `out`. No bar is begun while more than `most_early`
-    // numbers are kept aside.
-    InOrder(std::size_t count, std::size_t most_early, Array<std::int32_t>& out) : most_early_(most_early), early_(count), out_(out) {}
+    // Of `count` bars, begun in their order; all their triangles fit into `out`. No bar is begun while more than
+    // `most_early` numbers are kept aside.
+    InOrder(std::size_t count, std::size_t most_early, Array<std::int32_t>& out)
+        : most_early_(most_early), early_(count), out_(out) {}
 
     // Before anything of bar n is drawn.
     void begin(std::size_t n) {

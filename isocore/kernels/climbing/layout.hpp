@@ -1,6 +1,6 @@
 // layout.hpp - How neighbours share their cuts. The paper lays out every face again after comparing the cuts of the
-// highrices on both sides; here both sides keep the crossings on the twelve edges of their boxes, and what is kept by any
-// box is a vertex of the mesh. One bit per crossing, in the order of edge_vertices.hpp, is all that this takes.
+// highrices on both sides; here both sides keep the crossings on the twelve edges of their boxes, and what is kept by
+// any box is a vertex of the mesh. One bit per crossing, in the order of edge_vertices.hpp, is all that this takes.
 #pragma once
 
 #include <algorithm>
@@ -54,9 +54,13 @@ class Layout {
 
     std::size_t crossings() const { return crossings_; }
     // The number of the first crossing of row (j, k), with which a strip starts.
-    std::uint32_t first_crossing(std::size_t j, std::size_t k) const { return first_crossing_[strips_ * k + j / strip]; }
+    std::uint32_t first_crossing(std::size_t j, std::size_t k) const {
+        return first_crossing_[strips_ * k + j / strip];
+    }
     // Those that are kept in that row's strip.
-    std::size_t vertices_in(std::size_t j, std::size_t k) const { return count(first_crossing(j, k), first_crossing_[strips_ * k + j / strip + 1]); }
+    std::size_t vertices_in(std::size_t j, std::size_t k) const {
+        return count(first_crossing(j, k), first_crossing_[strips_ * k + j / strip + 1]);
+    }
 
     // Keeps a crossing, from any thread. False if it was kept before.
     bool keep(std::size_t crossing) {
@@ -78,7 +82,8 @@ class Layout {
         if (first >= end) return 0;
         std::uint64_t word = kept_[first / 64].load(std::memory_order_relaxed) & ~std::uint64_t{0} << first % 64;
         std::uint32_t out = 0;
-        for (std::size_t w = first / 64; w < end / 64; word = kept_[++w].load(std::memory_order_relaxed)) out += ones(word);
+        for (std::size_t w = first / 64; w < end / 64; word = kept_[++w].load(std::memory_order_relaxed))
+            out += ones(word);
         return out + ones(word & ~(~std::uint64_t{0} << end % 64));
     }
 
@@ -91,12 +96,15 @@ class Layout {
 
     // Numbers the vertices anew; returns how many there are.
     std::size_t number() {
-        for (std::size_t n = 0; n + 1 < vertices_before_.size(); ++n) vertices_before_[n] = count(kGroup * n, kGroup * (n + 1));
+        for (std::size_t n = 0; n + 1 < vertices_before_.size(); ++n)
+            vertices_before_[n] = count(kGroup * n, kGroup * (n + 1));
         return add_up(vertices_before_, static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
     }
 
     // The vertex that a crossing is, or the next one that is kept.
-    std::size_t vertex(std::size_t crossing) const { return vertices_before_[crossing / kGroup] + count(crossing / kGroup * kGroup, crossing); }
+    std::size_t vertex(std::size_t crossing) const {
+        return vertices_before_[crossing / kGroup] + count(crossing / kGroup * kGroup, crossing);
+    }
 
   private:
     void add(std::size_t word, std::uint64_t bits) {
@@ -112,7 +120,9 @@ class Layout {
             const std::uint32_t count = n;
             n = static_cast<std::uint32_t>(sum);
             sum += count;
-            if (sum > limit) throw std::length_error("the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
+            if (sum > limit)
+                throw std::length_error(
+                    "the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
         }
         return sum;
     }

@@ -11,8 +11,8 @@
 
 namespace isocore::climbing {
 
-// Ligns are numbered by their axis and their place along the other two. Functions are told how many samples a lign has, so
-// that those who know it beforehand have it folded in.
+// Ligns are numbered by their axis and their place along the other two. Functions are told how many samples a lign has,
+// so that those who know it beforehand have it folded in.
 class Ligns {
   public:
     // Of a block with so many samples per lign.
@@ -28,20 +28,24 @@ class Ligns {
         return axis * samples * samples + static_cast<std::size_t>(first) + samples * static_cast<std::size_t>(second);
     }
     // Of the edge that starts so far along a lign.
-    static constexpr std::size_t edge(std::size_t samples, std::size_t lign, int along) { return lign * samples + static_cast<std::size_t>(along); }
+    static constexpr std::size_t edge(std::size_t samples, std::size_t lign, int along) {
+        return lign * samples + static_cast<std::size_t>(along);
+    }
 
     // The edges along an axis that start in row (j, k) of the block, by the sample i where they do.
     struct Row {
         std::uint32_t lign, lign_step, along, along_step;
     };
     static Row row(std::size_t samples, std::size_t axis, int j, int k) {
-        const auto size = static_cast<std::uint32_t>(samples), a = static_cast<std::uint32_t>(axis), y = static_cast<std::uint32_t>(j), z = static_cast<std::uint32_t>(k);
+        const auto size = static_cast<std::uint32_t>(samples), a = static_cast<std::uint32_t>(axis),
+                   y = static_cast<std::uint32_t>(j), z = static_cast<std::uint32_t>(k);
         const std::array<std::uint32_t, 3> ligns{y + size * z, size * z, size * y}, alongs{0, y, z};
         return {a * size * size + ligns[a], a != 0, alongs[a], a == 0};
     }
     // Notes that edge i of a row is crossed, and returns the edge's number.
     std::size_t cross(const Row& row, int i) {
-        const std::uint32_t lign = row.lign + row.lign_step * static_cast<std::uint32_t>(i), along = row.along + row.along_step * static_cast<std::uint32_t>(i);
+        const std::uint32_t lign = row.lign + row.lign_step * static_cast<std::uint32_t>(i),
+                            along = row.along + row.along_step * static_cast<std::uint32_t>(i);
         crossed[lign] |= std::uint64_t{1} << along;
         return edge(samples_, lign, static_cast<int>(along));
     }

@@ -9,8 +9,8 @@ namespace isocore::climbing {
 using LoopTriangle = std::array<std::size_t, 3>;  // numbers of corners
 using LoopPart = std::array<std::size_t, 2>;      // between two corners
 
-// Writes the size - 2 triangles; apex(i, j): the third corner of the one at the line from corner i to corner j. There is
-// room for `size` parts.
+// Writes the size - 2 triangles; apex(i, j): the third corner of the one at the line from corner i to corner j. There
+// is room for `size` parts.
 template <class Apex>
 void list_triangles(std::size_t size, const Apex& apex, LoopPart* parts, LoopTriangle* out) {
     parts[0] = {0, size - 1};

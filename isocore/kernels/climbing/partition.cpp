@@ -1,4 +1,5 @@
-// Sections 3 to 5 of the paper (dikes, padis, highrices), turned over: from the block down instead of from the dikes up.
+// Sections 3 to 5 of the paper (dikes, padis, highrices), turned over: from the block down instead of from the dikes
+// up.
 #include "climbing/partition.hpp"
 
 #include <algorithm>
@@ -25,7 +26,13 @@ template <int N>
 class Partition {
   public:
     Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
-        : signs_(signs), layout_(layout), judge_(judge), flat_(judge ? judge->max_error : 0), site_(N), ligns_(N + 1), clouds_(N) {}
+        : signs_(signs),
+          layout_(layout),
+          judge_(judge),
+          flat_(judge ? judge->max_error : 0),
+          site_(N),
+          ligns_(N + 1),
+          clouds_(N) {}
 
     // Adds a block to its bar. A bar's blocks come in their order; those whose samples lie on one side are left out.
     void climb(const Dims& origin, BarBoxes& bar) {
@@ -69,7 +76,9 @@ class Partition {
 
     void gather() {
         std::size_t crossings = 0;
-        for (const Edge& start : site_.crossed_rows()) crossings += static_cast<std::size_t>(std::popcount(site_.row(start.at(1), start.at(2)).crossed[start.axis()]));
+        for (const Edge& start : site_.crossed_rows())
+            crossings +=
+                static_cast<std::size_t>(std::popcount(site_.row(start.at(1), start.at(2)).crossed[start.axis()]));
         clouds_.begin(crossings);
         judge_->gather(site_, clouds_, ligns_);
         crossings_ = clouds_.finish();
@@ -126,29 +135,37 @@ class Partition {
         constexpr std::size_t kSamples = N + 1;
         const std::size_t lign = Ligns::lign(kSamples, side.axis, ends[side.ends[0]], ends[side.ends[1]]);
         const int along = std::countr_zero(ligns_.crossed[lign] & ~std::uint64_t{0} << ends[2u * side.axis]);
-        return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) * judge_->scale[side.axis];
+        return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) *
+               judge_->scale[side.axis];
     }
 
     void settle(const Box& box, int found, const Cloud& around, Halvings& halvings) {
         if (found == kSplit) {
             split(box, around, halvings);
         } else if (found == kAccepted) {
-            if (is_cell(box)) cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
-            else boxes_.push_back(high_rice(box));
+            if (is_cell(box))
+                cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
+            else
+                boxes_.push_back(high_rice(box));
         }
     }
 
     void split(const Box& box, const Cloud& around, Halvings& halvings) {
         const std::size_t top = clouds_.top();
-        const Cloud here = judge_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
+        const Cloud here =
+            judge_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
         const Choice choice = best_axis(box, here);
         const auto parts = halves(box, choice.axis);
-        if (!is_cell(parts[0])) halvings.add(axes(box), {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
+        if (!is_cell(parts[0]))
+            halvings.add(axes(box),
+                         {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
         for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.found[n], here, halvings);
         clouds_.pop(top);
     }
 
-    static Fate fate(int found) { return found == kSplit ? Fate::halved : found == kAccepted ? Fate::highrice : Fate::nothing; }
+    static Fate fate(int found) {
+        return found == kSplit ? Fate::halved : found == kAccepted ? Fate::highrice : Fate::nothing;
+    }
     static bool is_cell(const Box& box) { return Dikes::is_unit(std::min({box[0], box[1], box[2]})); }
     // Those along which a box can be halved, a bit each.
     static unsigned axes(const Box& box) {
@@ -174,11 +191,14 @@ class Partition {
         Prices prices = survey_halves(box);
         std::array<int, 3> ranks;  // least is best
         for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
-        const auto best = [&] { return static_cast<std::size_t>(std::min(std::min(ranks[0], ranks[1]), ranks[2]) & 3); };
+        const auto best = [&] {
+            return static_cast<std::size_t>(std::min(std::min(ranks[0], ranks[1]), ranks[2]) & 3);
+        };
         if (!judge_) {
             if (Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
-                    if (!Dikes::is_unit(box[axis])) ranks[axis] = rank(box, axis, price_further(halves(box, axis), prices[axis]));
+                    if (!Dikes::is_unit(box[axis]))
+                        ranks[axis] = rank(box, axis, price_further(halves(box, axis), prices[axis]));
                 }
             }
             return {best(), prices[best()]};
@@ -207,7 +227,9 @@ class Partition {
     // Of dikes: long ones come first, and those that cannot be halved last.
     static constexpr std::array<int, 2 * N> kRanks = [] {
         std::array<int, 2 * N> ranks{};
-        for (Label label = 1; label < 2 * N; ++label) ranks[label] = 4 * ((Dikes::is_unit(label) ? kMoreThanAnyLength * kMoreThanAnyCost : 0) - Dikes::length(label));
+        for (Label label = 1; label < 2 * N; ++label)
+            ranks[label] =
+                4 * ((Dikes::is_unit(label) ? kMoreThanAnyLength * kMoreThanAnyCost : 0) - Dikes::length(label));
         return ranks;
     }();
     static int rank(const Box& box, std::size_t axis, int cost) {
@@ -222,7 +244,8 @@ class Partition {
             const float scale = judge_ ? judge_->scale[a] : 1;
             for (Label label = 1; label < 2 * N; ++label) {
                 const int low = Dikes::start(label), high = std::min(Dikes::end(label), measured_[a]);
-                dikes_[a][label] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high), static_cast<float>(low) * scale, static_cast<float>(high) * scale};
+                dikes_[a][label] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high),
+                                    static_cast<float>(low) * scale, static_cast<float>(high) * scale};
             }
         }
     }
@@ -247,7 +270,7 @@ class Partition {
     Layout& layout_;
     const Judge* judge_;
     Flatness flat_;
-    std::array<int, 3> measured_{};                          // cells along each axis
+    std::array<int, 3> measured_{};  // cells along each axis
     std::array<std::array<Segment, 2 * N>, 3> dikes_;
     Block<N> block_;
     Survey<N> survey_;
@@ -272,8 +295,10 @@ std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const J
         BarBoxes& bar = bars[n];
         for (std::size_t x = 0; x + 1 < signs.dims[0]; x += N) {
             const bool is_crossed = shadow.crosses(x, std::min<std::size_t>(N, signs.dims[0] - 1 - x));
-            if (is_crossed) partition->climb({x, y, z}, bar);
-            else bar.halvings.add_block(Fate::nothing);
+            if (is_crossed)
+                partition->climb({x, y, z}, bar);
+            else
+                bar.halvings.add_block(Fate::nothing);
         }
         bar.halvings.shrink_to_fit();
     });
@@ -282,14 +307,21 @@ std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const J
 
 }  // namespace
 
-std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge, Layout& layout) {
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge,
+                                     Layout& layout) {
     switch (block_size) {
-        case 1: return partition_bars<1>(signs, threads, judge, layout);
-        case 2: return partition_bars<2>(signs, threads, judge, layout);
-        case 4: return partition_bars<4>(signs, threads, judge, layout);
-        case 8: return partition_bars<8>(signs, threads, judge, layout);
-        case 16: return partition_bars<16>(signs, threads, judge, layout);
-        default: return partition_bars<32>(signs, threads, judge, layout);
+        case 1:
+            return partition_bars<1>(signs, threads, judge, layout);
+        case 2:
+            return partition_bars<2>(signs, threads, judge, layout);
+        case 4:
+            return partition_bars<4>(signs, threads, judge, layout);
+        case 8:
+            return partition_bars<8>(signs, threads, judge, layout);
+        case 16:
+            return partition_bars<16>(signs, threads, judge, layout);
+        default:
+            return partition_bars<32>(signs, threads, judge, layout);
     }
 }
 

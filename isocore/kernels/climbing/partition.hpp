@@ -40,8 +40,9 @@ struct BarBoxes {
     std::size_t blocks = 0, highrices = 0;  // blocks with samples on both sides, and what they are halved down to
 };
 
-// Finds the highrices of all bars, [z][y], and keeps the crossings on their edges. Without a judge every box is flat. The
-// block size is 1, 2, 4, 8, 16 or 32.
-std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge, Layout& layout);
+// Finds the highrices of all bars, [z][y], and keeps the crossings on their edges. Without a judge every box is flat.
+// The block size is 1, 2, 4, 8, 16 or 32.
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge,
+                                     Layout& layout);
 
 }  // namespace isocore::climbing

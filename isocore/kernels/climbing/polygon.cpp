@@ -35,7 +35,9 @@ Vector<Numbers> Polygon::places(std::size_t first) const {
     return {Numbers(places_[0].data() + first), Numbers(places_[1].data() + first), Numbers(places_[2].data() + first)};
 }
 
-Vector<Numbers> Polygon::in_all_lanes(std::size_t n) const { return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])}; }
+Vector<Numbers> Polygon::in_all_lanes(std::size_t n) const {
+    return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])};
+}
 
 std::span<const Polygon::Triangle> Polygon::cut() {
     cut_ears();
@@ -44,7 +46,9 @@ std::span<const Polygon::Triangle> Polygon::cut() {
     }
     constexpr float kMost = kIllegal / 2;  // not kIllegal itself, as a price has its lane in its last bits
     if (!(cost_[size_ - 1] < kMost)) throw std::logic_error("a loop has no legal triangulation");
-    list_triangles(size_, [&](std::size_t i, std::size_t j) { return std::size_t{apex_[i * stride_ + j]}; }, parts_.data(), triangles_.data());
+    list_triangles(
+        size_, [&](std::size_t i, std::size_t j) { return std::size_t{apex_[i * stride_ + j]}; }, parts_.data(),
+        triangles_.data());
     return {triangles_.data(), size_ - 2};
 }
 
@@ -57,7 +61,8 @@ void Polygon::cut_ears() {
     for (std::size_t i = 0; i + 1 < size_; ++i) cost_[i * stride_ + i + 1] = cost_[(i + 1) * stride_ + i] = 0;
     for (std::size_t first = 0; first + 2 < size_; first += kLanes<float>) {
         const auto found = areas(places(first), places(first + 1), places(first + 2)).each();
-        for (std::size_t i = first; i < std::min(first + kLanes<float>, size_ - 2); ++i) note(i, i + 2, found[i - first], i + 1);
+        for (std::size_t i = first; i < std::min(first + kLanes<float>, size_ - 2); ++i)
+            note(i, i + 2, found[i - first], i + 1);
     }
 }
 
@@ -66,7 +71,8 @@ void Polygon::find_apex(std::size_t i, std::size_t j) {
     float best = std::numeric_limits<float>::infinity();
     std::size_t apex = i + 1;
     for (std::size_t k = i + 1; k < j; k += kLanes<float>) {
-        const Numbers price = Numbers(cost_.data() + i * stride_ + k) + Numbers(cost_.data() + j * stride_ + k) + areas(from, places(k), to);
+        const Numbers price = Numbers(cost_.data() + i * stride_ + k) + Numbers(cost_.data() + j * stride_ + k) +
+                              areas(from, places(k), to);
         const float least = tagged(first_lanes(price, j - k, kIllegal)).least_lane();
         if (least < best) apex = k + std::bit_cast<std::uint32_t>(least) % kLanes<float>;
         best = std::min(best, least);

@@ -51,8 +51,8 @@ class Polygon {
     };
     std::vector<Corner> corners_;
     Vector<std::vector<float>> places_;  // of the corners, and room for all lanes
-    // Of the part between corners i ... j and the line from i to j: the area of its best triangles, and the corner of the
-    // one at that line.
+    // Of the part between corners i ... j and the line from i to j: the area of its best triangles, and the corner of
+    // the one at that line.
     std::vector<float> cost_;
     std::vector<std::uint16_t> apex_;
     std::vector<LoopPart> parts_;

@@ -7,7 +7,7 @@ namespace isocore::climbing {
 
 template <std::size_t length>
 void Polygons<length>::cut(std::size_t count) {
-    constexpr float kIllegal = 1e30f;  // more than any area; a few of them are still a number
+    constexpr float kIllegal = 1e30f;                      // more than any area; a few of them are still a number
     std::array<std::array<Numbers, length>, length> cost;  // twice the area of the best triangles between two corners
     for (std::size_t i = 0; i + 1 < length; ++i) cost[i][i + 1] = 0.0f;
     for (std::size_t span = 2; span < length; ++span) {
@@ -23,7 +23,9 @@ void Polygons<length>::cut(std::size_t count) {
             }
             apex.store(apex_[i][j].data());
             const bool is_whole = span + 1 == length;
-            cost[i][j] = is_whole ? best : choose(have_no_bit_in_common(Numbers(faces_[i].data()), Numbers(faces_[j].data())), best, kIllegal);
+            cost[i][j] = is_whole ? best
+                                  : choose(have_no_bit_in_common(Numbers(faces_[i].data()), Numbers(faces_[j].data())),
+                                           best, kIllegal);
         }
     }
     const auto found = cost[0][length - 1].each();
@@ -36,7 +38,9 @@ template <std::size_t length>
 auto Polygons<length>::triangles(std::size_t n) const -> std::array<Triangle, kTriangles> {
     std::array<Triangle, kTriangles> out;
     std::array<LoopPart, length> parts;
-    list_triangles(length, [&](std::size_t i, std::size_t j) { return static_cast<std::size_t>(apex_[i][j][n]); }, parts.data(), out.data());
+    list_triangles(
+        length, [&](std::size_t i, std::size_t j) { return static_cast<std::size_t>(apex_[i][j][n]); }, parts.data(),
+        out.data());
     return out;
 }
 

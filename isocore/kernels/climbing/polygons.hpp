@@ -1,5 +1,5 @@
-// polygons.hpp - Cuts several loops of the same length into triangles at once, by the rules of polygon.hpp: nearly all loops
-// are short.
+// polygons.hpp - Cuts several loops of the same length into triangles at once, by the rules of polygon.hpp: nearly all
+// loops are short.
 #pragma once
 
 #include <array>
@@ -29,7 +29,9 @@ class Polygons {
         faces_[corner][n] = std::bit_cast<float>(std::uint32_t{faces});
         vertices_[corner][n] = vertex;
     }
-    Spot place(std::size_t n, std::size_t corner) const { return {places_[corner][0][n], places_[corner][1][n], places_[corner][2][n]}; }
+    Spot place(std::size_t n, std::size_t corner) const {
+        return {places_[corner][0][n], places_[corner][1][n], places_[corner][2][n]};
+    }
     std::int32_t vertex(std::size_t n, std::size_t corner) const { return vertices_[corner][n]; }
 
     // Cuts the first `count` loops.

@@ -26,9 +26,12 @@ inline constexpr std::array<std::uint16_t, 256> kCrossed = [] {
 
 // The ends of a box along each axis: low, high, low, ...
 using Ends = std::array<int, 6>;
-inline Ends ends_of(const HighRice& box) { return {box.low[0], box.high[0], box.low[1], box.high[1], box.low[2], box.high[2]}; }
+inline Ends ends_of(const HighRice& box) {
+    return {box.low[0], box.high[0], box.low[1], box.high[1], box.low[2], box.high[2]};
+}
 
-// Where an edge of a box lies: along which axis, at which of the ends along the other two, and its start as three of them.
+// Where an edge of a box lies: along which axis, at which of the ends along the other two, and its start as three of
+// them.
 struct Side {
     std::uint8_t axis;
     std::array<std::uint8_t, 2> ends;
@@ -40,7 +43,8 @@ inline constexpr std::array<Side, 12> kSides = [] {
         const auto across = cube::other_axes(edge / 4);
         Side& side = sides[static_cast<std::size_t>(edge)];
         side.axis = static_cast<std::uint8_t>(edge / 4);
-        for (unsigned a = 0; a < 3; ++a) side.start[a] = static_cast<std::uint8_t>(2 * a + (cube::low_corner(edge) >> a & 1));
+        for (unsigned a = 0; a < 3; ++a)
+            side.start[a] = static_cast<std::uint8_t>(2 * a + (cube::low_corner(edge) >> a & 1));
         side.ends = {side.start[static_cast<std::size_t>(across[0])], side.start[static_cast<std::size_t>(across[1])]};
     }
     return sides;

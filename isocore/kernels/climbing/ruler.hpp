@@ -1,4 +1,5 @@
-// ruler.hpp - Measures highrices, many at a time: how far the crossings in a box that are not drawn lie from its triangles.
+// ruler.hpp - Measures highrices, many at a time: how far the crossings in a box that are not drawn lie from its
+// triangles.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,9 @@ template <class Sample>
 class Ruler {
   public:
     Ruler(const GridView<Sample>& samples, const SignGrid& signs, const Options& options)
-        : options_(options), unit_(*std::max_element(options.spacing.begin(), options.spacing.end())), spotter_(samples, signs, options.isovalue) {
+        : options_(options),
+          unit_(*std::max_element(options.spacing.begin(), options.spacing.end())),
+          spotter_(samples, signs, options.isovalue) {
         for (std::size_t a = 0; a < 3; ++a) stretch_[a] = static_cast<float>(options.spacing[a] / unit_);
         if (stretch_ != kNoStretch) world_ = std::make_unique<Measured>();
         // In the units of the distances, and rounded down.
@@ -36,13 +39,15 @@ class Ruler {
         std::size_t placed = 0;
         const auto place_added = [&] {
             const std::size_t start = placed;
-            spotter_.visit(kNoStretch, [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t count) {
-                for (std::size_t a = 0; a < 3; ++a) {
-                    places[a].store(voxels_.places[a].data() + start + first);
-                    if (world_) (places[a] * stretch_[a]).store(world_->places[a].data() + start + first);
-                }
-                placed += count;
-            });
+            spotter_.visit(kNoStretch,
+                           [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t count) {
+                               for (std::size_t a = 0; a < 3; ++a) {
+                                   places[a].store(voxels_.places[a].data() + start + first);
+                                   if (world_)
+                                       (places[a] * stretch_[a]).store(world_->places[a].data() + start + first);
+                               }
+                               placed += count;
+                           });
         };
         for (const BoxEdge& found : edges.dropped()) {
             spotter_.add(origin, static_cast<int>(found.edge().axis()), found.edge().at(), edges.box(found.box()).low);
@@ -51,8 +56,8 @@ class Ruler {
         place_added();
     }
 
-    // Adds a box of those, the one of that number in its bar, whose dropped crossings are `count` from the first on. Its
-    // triangles are added next.
+    // Adds a box of those, the one of that number in its bar, whose dropped crossings are `count` from the first on.
+    // Its triangles are added next.
     void begin_box(std::size_t number, std::size_t first, std::size_t count, std::size_t triangles, Bar& bar) {
         if (voxels_.facets.size() + triangles > Facets::kRoom || crossings_ + count > BoxEdges::kRoom) measure(bar);
         boxes_.push_back({number, triangles, first, count});
@@ -93,7 +98,9 @@ class Ruler {
         std::size_t number, triangles, first, crossings;
     };
 
-    static Spot stretched(const Spot& place, const Spot& stretch) { return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]}; }
+    static Spot stretched(const Spot& place, const Spot& stretch) {
+        return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
+    }
 
     // What is measured in voxels, or in the world.
     struct Measured {
@@ -108,14 +115,17 @@ class Ruler {
         std::size_t triangle = 0, crossing = 0;
         for (const Box& box : boxes_) {
             float* const squared = squared_.data() + crossing;
-            const Vector<const float*> points{places[0].data() + box.first, places[1].data() + box.first, places[2].data() + box.first};
+            const Vector<const float*> points{places[0].data() + box.first, places[1].data() + box.first,
+                                              places[2].data() + box.first};
             facets.squared_distances(triangle, box.triangles, points, box.crossings, squared);
-            if (bar && std::sqrt(*std::max_element(squared, squared + box.crossings)) > limit_) bar->broken.push_back(box.number);
+            if (bar && std::sqrt(*std::max_element(squared, squared + box.crossings)) > limit_)
+                bar->broken.push_back(box.number);
             triangle += box.triangles;
             crossing += box.crossings;
         }
         for (std::size_t n = 0; n < crossing; n += kLanes<float>) {
-            const Numbers squared = first_lanes(Numbers(squared_.data() + n), std::min(kLanes<float>, crossing - n), 0.0f);
+            const Numbers squared =
+                first_lanes(Numbers(squared_.data() + n), std::min(kLanes<float>, crossing - n), 0.0f);
             tally.add(root(squared), squared);
         }
         facets.clear();
@@ -128,7 +138,7 @@ class Ruler {
     std::vector<Box> boxes_;
     std::size_t crossings_ = 0;  // of these
     Spotter<Sample, kPlacedAtOnce> spotter_;
-    Row squared_;                      // distances
+    Row squared_;  // distances
     Measured voxels_;
     std::unique_ptr<Measured> world_;  // where a voxel is not as long along all axes
 };

@@ -1,5 +1,5 @@
-// site.hpp - One block, copied close together: its sign bits, its crossed edges, and the numbers of their crossings. All
-// places are in samples from the block's origin.
+// site.hpp - One block, copied close together: its sign bits, its crossed edges, and the numbers of their crossings.
+// All places are in samples from the block's origin.
 #pragma once
 
 #include <algorithm>
@@ -110,7 +110,9 @@ class Site {
             for (int j = 0; j <= cells[1]; ++j) visit(j, k);
         }
     }
-    std::array<std::size_t, 2> in_grid(int j, int k) const { return {origin[1] + static_cast<std::size_t>(j), origin[2] + static_cast<std::size_t>(k)}; }
+    std::array<std::size_t, 2> in_grid(int j, int k) const {
+        return {origin[1] + static_cast<std::size_t>(j), origin[2] + static_cast<std::size_t>(k)};
+    }
 
     const SignGrid* signs_ = nullptr;
     const Layout* layout_ = nullptr;
@@ -128,7 +130,8 @@ class Site {
         for_rows([&](int j, int k) {
             Row* const row = rows_.data() + row_index(j, k);
             const Row &right = row[j < cells[1] ? 1 : 0], &up = row[k < cells[2] ? stride_ : 0];
-            row->crossed = {(row->signs ^ row->signs >> 1) & samples >> 1, row->signs ^ right.signs, row->signs ^ up.signs};
+            row->crossed = {(row->signs ^ row->signs >> 1) & samples >> 1, row->signs ^ right.signs,
+                            row->signs ^ up.signs};
             const Edge start = Edge::along_x(0, static_cast<unsigned>(j), static_cast<unsigned>(k));
             for (int axis = 0; axis < 3; ++axis) {
                 *end = start.of_axis(axis);

@@ -36,15 +36,21 @@ inline unsigned corners_of(const SignGrid& signs, const Dims& origin, const High
     return out;
 }
 
-// Writes the halvings of a bar anew: boxes that break the bound are halved until their parts hold disks again. These are
-// as simple, but their corners need not show it.
+// Writes the halvings of a bar anew: boxes that break the bound are halved until their parts hold disks again. These
+// are as simple, but their corners need not show it.
 class BrokenBar {
   public:
     BrokenBar(const SignGrid& signs, const Bars& bars, std::size_t number, Bar& bar, std::vector<LateBox>& late)
-        : signs_(signs), bar_(bar), late_(late), origin_(bars.origin(number)), old_(bar.halvings), broken_(bar.broken.begin()) {
+        : signs_(signs),
+          bar_(bar),
+          late_(late),
+          origin_(bars.origin(number)),
+          old_(bar.halvings),
+          broken_(bar.broken.begin()) {
         const int size = static_cast<int>(bars.block_size);
         for (; origin_[0] + 1 < signs.dims[0]; origin_[0] += bars.block_size) {
-            for (std::size_t a = 0; a < 3; ++a) cells_[a] = static_cast<int>(std::min(bars.block_size, signs.dims[a] - 1 - origin_[a]));
+            for (std::size_t a = 0; a < 3; ++a)
+                cells_[a] = static_cast<int>(std::min(bars.block_size, signs.dims[a] - 1 - origin_[a]));
             const Fate fate = old_.next_block();
             const Piece block = Piece::block(size);
             if (is_broken(fate)) {
@@ -68,11 +74,16 @@ class BrokenBar {
         const Halving before = old_.next(piece.axes());
         const auto [lower, upper] = piece.halves(before.axis);
         const bool is_lower_broken = is_broken(before.lower), is_upper_broken = is_broken(before.upper);
-        new_.add(piece.axes(), {before.axis, is_lower_broken ? Fate::halved : before.lower, is_upper_broken ? Fate::halved : before.upper});
-        if (is_lower_broken) halve(lower);
-        else if (before.lower == Fate::halved) copy(lower);
-        if (is_upper_broken) halve(upper);
-        else if (before.upper == Fate::halved) copy(upper);
+        new_.add(piece.axes(), {before.axis, is_lower_broken ? Fate::halved : before.lower,
+                                is_upper_broken ? Fate::halved : before.upper});
+        if (is_lower_broken)
+            halve(lower);
+        else if (before.lower == Fate::halved)
+            copy(lower);
+        if (is_upper_broken)
+            halve(upper);
+        else if (before.upper == Fate::halved)
+            copy(upper);
     }
 
     // Along the longest axis.
@@ -98,7 +109,8 @@ class BrokenBar {
         }
     }
 
-    // Of a half of a box. At the volume's end the upper half may lie past it; then the lower one is as good as the whole.
+    // Of a half of a box. At the volume's end the upper half may lie past it; then the lower one is as good as the
+    // whole.
     Fate fate(const Piece& half, const HighRice& whole) const {
         const HighRice box = half.within(cells_);
         for (std::size_t a = 0; a < 3; ++a) {
@@ -126,7 +138,7 @@ class BrokenBar {
     HalvingsReader old_;
     Halvings new_;
     std::vector<std::size_t>::const_iterator broken_;
-    std::size_t box_ = 0;       // the next one of several cells
+    std::size_t box_ = 0;  // the next one of several cells
 };
 
 // Halves the boxes that broke the bound, and returns their parts; the bars that these touch are stale then.
@@ -139,7 +151,8 @@ inline std::vector<LateBox> split_broken(const SignGrid& signs, Bars& bars) {
         // A sample between two bars lies on both.
         const auto touched = [&](std::size_t a) {
             const std::size_t low = origin[a] + box.low[a], high = origin[a] + box.high[a];
-            return std::array{(low - std::min<std::size_t>(low, 1)) / bars.block_size, std::min(high / bars.block_size, bars.blocks[a] - 1)};
+            return std::array{(low - std::min<std::size_t>(low, 1)) / bars.block_size,
+                              std::min(high / bars.block_size, bars.blocks[a] - 1)};
         };
         const auto y = touched(1), z = touched(2);
         for (std::size_t k = z[0]; k <= z[1]; ++k) {
@@ -157,8 +170,10 @@ struct LateVertex {
     std::size_t vertex = 0;
 };
 
-// Keeps the crossings on the edges of late boxes; returns those that were not kept before, in the order of their numbers.
-inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vector<LateBox>& late, int block_size, Layout& layout) {
+// Keeps the crossings on the edges of late boxes; returns those that were not kept before, in the order of their
+// numbers.
+inline std::vector<LateVertex> keep_late(const SignGrid& signs, const std::vector<LateBox>& late, int block_size,
+                                         Layout& layout) {
     std::vector<LateVertex> out;
     const auto site = std::make_unique<Site>(block_size);
     for (const auto& [origin, box] : late) {
@@ -189,22 +204,27 @@ void make_room(const std::vector<LateVertex>& late, Array<Coordinate>& vertices)
 // Turns the numbers that vertices had before into those that they have among the late ones.
 inline void renumber(const std::vector<LateVertex>& late, std::span<std::int32_t> vertices) {
     std::vector<std::int32_t> first_moved;
-    for (const LateVertex& vertex : late) first_moved.push_back(static_cast<std::int32_t>(vertex.vertex - first_moved.size()));
+    for (const LateVertex& vertex : late)
+        first_moved.push_back(static_cast<std::int32_t>(vertex.vertex - first_moved.size()));
     for (std::int32_t& vertex : vertices) {
-        vertex += static_cast<std::int32_t>(std::upper_bound(first_moved.begin(), first_moved.end(), vertex) - first_moved.begin());
+        vertex += static_cast<std::int32_t>(std::upper_bound(first_moved.begin(), first_moved.end(), vertex) -
+                                            first_moved.begin());
     }
 }
 
 // What was drawn anew, by bar.
 using Redrawn = std::vector<std::optional<std::vector<std::int32_t>>>;
 
-// Moves the triangles of all bars from where they were `before` to where `bars` wants them now, and puts in what was redrawn.
-inline void move_triangles(const std::vector<std::size_t>& before, const Redrawn& redrawn, const Bars& bars, Array<std::int32_t>& triangles) {
+// Moves the triangles of all bars from where they were `before` to where `bars` wants them now, and puts in what was
+// redrawn.
+inline void move_triangles(const std::vector<std::size_t>& before, const Redrawn& redrawn, const Bars& bars,
+                           Array<std::int32_t>& triangles) {
     const auto at = [&](std::size_t triangle) { return triangles.begin() + static_cast<std::ptrdiff_t>(3 * triangle); };
     const std::size_t count = bars.bars.size();
     for (std::size_t n = 0; n < count; ++n) {  // from the first on, so that nothing that is yet to move is overwritten
         const Bar& bar = bars.bars[n];
-        if (!redrawn[n] && bar.first_triangle < before[n]) std::copy(at(before[n]), at(before[n] + bar.triangles), at(bar.first_triangle));
+        if (!redrawn[n] && bar.first_triangle < before[n])
+            std::copy(at(before[n]), at(before[n] + bar.triangles), at(bar.first_triangle));
     }
     for (std::size_t n = count; n-- > 0;) {  // from the last on, for the same reason
         const Bar& bar = bars.bars[n];

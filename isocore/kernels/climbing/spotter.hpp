@@ -21,11 +21,13 @@ class Spotter {
   public:
     using Numbers = Lanes<float>;
 
-    Spotter(const GridView<Sample>& samples, const SignGrid& signs, double isovalue) : samples_(samples), signs_(signs), isovalue_(isovalue) {}
+    Spotter(const GridView<Sample>& samples, const SignGrid& signs, double isovalue)
+        : samples_(samples), signs_(signs), isovalue_(isovalue) {}
 
     bool full() const { return size_ == room; }
 
-    // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`, as seen from the sample `from`.
+    // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`, as seen from the
+    // sample `from`.
     void add(const Dims& origin, int axis, const Place& at, const std::array<std::uint8_t, 3>& from = {}) {
         const auto whole = [&](std::size_t a) { return origin[a] + static_cast<std::size_t>(at[a]); };
         for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(at[a] - from[a]);
@@ -35,13 +37,14 @@ class Spotter {
         wholes_[size_++] = crossing.whole;
     }
 
-    // Calls visit(places, shares, first, count) for all that were added, in their order, `count` lanes at a time, and forgets
-    // them. The places are stretched; the shares are of the edges' ways.
+    // Calls visit(places, shares, first, count) for all that were added, in their order, `count` lanes at a time, and
+    // forgets them. The places are stretched; the shares are of the edges' ways.
     template <class Visit>
     void visit(const Spot& scale, const Visit& visit) {
         const Numbers zero(0.0f), lowest(static_cast<float>(kClamp)), highest(static_cast<float>(1 - kClamp));
         for (std::size_t n = 0; n < size_; n += kLanes<float>) {
-            const Numbers share = least(highest, greatest(lowest, Numbers(parts_.data() + n) / Numbers(wholes_.data() + n)));
+            const Numbers share =
+                least(highest, greatest(lowest, Numbers(parts_.data() + n) / Numbers(wholes_.data() + n)));
             const Numbers axis(axes_.data() + n);
             Vector<Numbers> places;
             for (std::size_t a = 0; a < 3; ++a) {

@@ -2,8 +2,8 @@
 // the first axis, and the loops run over the dikes of the other two. A box may become one highrice iff
 //   it is simple: every lign of the closed box is crossed at most once,
 //   it is a disk: its corners alone show one loop and no ambiguous face, and
-//   it is a graph: no cell face in it has alternating corners, and all its ligns along some axis are crossed in the same
-//   direction (README.md says why). A single cell always may.
+//   it is a graph: no cell face in it has alternating corners, and all its ligns along some axis are crossed in the
+//   same direction (README.md says why). A single cell always may.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,10 @@ struct BoxCorners {
         const Word y0 = c[0] ^ c[2], y1 = c[1] ^ c[3], y2 = c[4] ^ c[6], y3 = c[5] ^ c[7];
         const Word z0 = c[0] ^ c[4], z1 = c[1] ^ c[5], z2 = c[2] ^ c[6], z3 = c[3] ^ c[7];
         crossed = x0 | x1 | x2 | x3 | y0 | y1 | y2 | y3 | z0 | z1 | z2 | z3;
-        const Word ambiguous = (x0 & x1 & y1) | (x2 & x3 & y3) | (x0 & x2 & z1) | (x1 & x3 & z3) | (y0 & y2 & z2) | (y1 & y3 & z3);
-        const Word mirrored = ~((c[0] ^ c[7]) | (c[1] ^ c[6]) | (c[2] ^ c[5]) | (c[3] ^ c[4]));  // two loops, if none is ambiguous
+        const Word ambiguous =
+            (x0 & x1 & y1) | (x2 & x3 & y3) | (x0 & x2 & z1) | (x1 & x3 & z3) | (y0 & y2 & z2) | (y1 & y3 & z3);
+        const Word mirrored =
+            ~((c[0] ^ c[7]) | (c[1] ^ c[6]) | (c[2] ^ c[5]) | (c[3] ^ c[4]));  // two loops, if none is ambiguous
         disk = crossed & ~ambiguous & ~mirrored;
     }
 };
@@ -38,7 +40,9 @@ static_assert([] {
         std::array<unsigned, 8> bits{};
         for (unsigned c = 0; c < 8; ++c) bits[c] = corners >> c & 1;
         const BoxCorners<unsigned> box(bits);
-        if ((box.crossed & 1) != (kContents[corners] != Content::nothing) || (box.disk & 1) != (kContents[corners] == Content::disk)) return false;
+        if ((box.crossed & 1) != (kContents[corners] != Content::nothing) ||
+            (box.disk & 1) != (kContents[corners] == Content::disk))
+            return false;
     }
     return true;
 }());
@@ -49,7 +53,8 @@ class Survey {
     using Bits = DikeBits<N>;
     using Word = typename Bits::Word;
 
-    // What becomes of a box, as the price of what it yields: in half boxes, and more than two boxes if it must be split.
+    // What becomes of a box, as the price of what it yields: in half boxes, and more than two boxes if it must be
+    // split.
     static constexpr int kNothing = 0, kAccepted = 2, kSplit = 5;
 
     // further: is it to be known what the halves of boxes cost?
@@ -76,7 +81,8 @@ class Survey {
 
     // What two halves may cost together, but for both being split.
     static constexpr std::size_t kSteps = 5;
-    static constexpr std::array<int, kSteps + 1> kPrices{2 * kNothing, kNothing + kAccepted, 2 * kAccepted, kNothing + kSplit, kAccepted + kSplit, 2 * kSplit};
+    static constexpr std::array<int, kSteps + 1> kPrices{2 * kNothing,      kNothing + kAccepted, 2 * kAccepted,
+                                                         kNothing + kSplit, kAccepted + kSplit,   2 * kSplit};
     static constexpr std::array<int, kSteps> kStep = [] {
         std::array<int, kSteps> steps{};
         for (std::size_t n = 0; n < kSteps; ++n) steps[n] = kPrices[n + 1] - kPrices[n];
@@ -84,9 +90,25 @@ class Survey {
     }();
 
     // Marks of samples, or of steps from a sample to the next, by which of the two they are along y and z.
-    enum Mark : std::size_t { x_in, x_out, y_in, y_out, z_in, z_out, alternating_xy, alternating_xz, alternating_yz, again_x, kMarks };
-    static constexpr bool steps_along_y(std::size_t mark) { return mark == y_in || mark == y_out || mark == alternating_xy || mark == alternating_yz; }
-    static constexpr bool steps_along_z(std::size_t mark) { return mark == z_in || mark == z_out || mark == alternating_xz || mark == alternating_yz; }
+    enum Mark : std::size_t {
+        x_in,
+        x_out,
+        y_in,
+        y_out,
+        z_in,
+        z_out,
+        alternating_xy,
+        alternating_xz,
+        alternating_yz,
+        again_x,
+        kMarks
+    };
+    static constexpr bool steps_along_y(std::size_t mark) {
+        return mark == y_in || mark == y_out || mark == alternating_xy || mark == alternating_yz;
+    }
+    static constexpr bool steps_along_z(std::size_t mark) {
+        return mark == z_in || mark == z_out || mark == alternating_xz || mark == alternating_yz;
+    }
 
     using Line = std::array<Word, N + 1>;      // along z, by sample or step
     using DikeLine = std::array<Word, 2 * N>;  // along z, by dike
@@ -97,7 +119,8 @@ class Survey {
             mark_corners(block.rows[j], j);
             mark_again_z(j);
         }
-        one_way_ = has_none(x_in) || has_none(x_out) || has_none(y_in) || has_none(y_out) || has_none(z_in) || has_none(z_out);
+        one_way_ =
+            has_none(x_in) || has_none(x_out) || has_none(y_in) || has_none(y_out) || has_none(z_in) || has_none(z_out);
         plain_ = has_none(alternating_xy) && has_none(alternating_xz) && has_none(alternating_yz);
         for (std::size_t m = 0; m < kMarks; ++m) sum_up_y(marks_[m], steps_along_y(m));
         sum_up_y(again_z_, false);
@@ -113,7 +136,9 @@ class Survey {
     }
 
     // Faces between four ligns of which each of the middle two is a neighbour of both others.
-    ISOCORE_INLINED static Word alternating(Word first, Word one, Word other, Word last) { return (first ^ one) & (first ^ other) & ~(first ^ last); }
+    ISOCORE_INLINED static Word alternating(Word first, Word one, Word other, Word last) {
+        return (first ^ one) & (first ^ other) & ~(first ^ last);
+    }
 
     // Marks what starts in plane j of the block.
     void mark_plane(const Block<N>& block, std::size_t j) {
@@ -146,7 +171,8 @@ class Survey {
             ending[k] = Bits::ending(rows[k]);
         }
         for (Label z = 1; z < 2 * N; ++z) {
-            const auto low = static_cast<std::size_t>(Dike<N>::start(z)), high = static_cast<std::size_t>(Dike<N>::end(z));
+            const auto low = static_cast<std::size_t>(Dike<N>::start(z)),
+                       high = static_cast<std::size_t>(Dike<N>::end(z));
             corners_[j][0][z] = starting[low];
             corners_[j][1][z] = ending[low];
             corners_[j][2][z] = starting[high];
@@ -190,12 +216,13 @@ class Survey {
         for (std::size_t k = 0; k < N; ++k) out[N + k] = steps ? line[k] : line[k] | line[k + 1];
         halve<N / 2>(out);
     }
-    // From dikes along z to those twice as long, which there are `count` of, and so on; a template, so that loops over them
-    // vectorise.
+    // From dikes along z to those twice as long, which there are `count` of, and so on; a template, so that loops over
+    // them vectorise.
     template <std::size_t count>
     static void halve(DikeLine& line) {
         if constexpr (count > 0) {
-            for (std::size_t z = 0; z < count; ++z) line[count + z] = line[2 * count + 2 * z] | line[2 * count + 2 * z + 1];
+            for (std::size_t z = 0; z < count; ++z)
+                line[count + z] = line[2 * count + 2 * z] | line[2 * count + 2 * z + 1];
             halve<count / 2>(line);
         } else {
             line[0] = 0;
@@ -209,29 +236,35 @@ class Survey {
         const auto sum_up = [&](std::size_t m) { sum_up_z(marks_[m][y], steps_along_z(m), marks[m]); };
         sum_up_z(again_y_[y], false, again);
         sum_up(again_x);
-        for (std::size_t z = 0; z < 2 * N; ++z) bad[z] = marks[again_x][z] | Bits::over_samples(again[z] | again_z_[y][z]);
+        for (std::size_t z = 0; z < 2 * N; ++z)
+            bad[z] = marks[again_x][z] | Bits::over_samples(again[z] | again_z_[y][z]);
         if (!plain_) {
             for (std::size_t m = alternating_xy; m <= alternating_yz; ++m) sum_up(m);
             for (std::size_t z = 0; z < 2 * N; ++z) {
-                bad[z] |= Bits::over_steps(marks[alternating_xy][z] | marks[alternating_xz][z]) | Bits::over_samples(marks[alternating_yz][z]);
+                bad[z] |= Bits::over_steps(marks[alternating_xy][z] | marks[alternating_xz][z]) |
+                          Bits::over_samples(marks[alternating_yz][z]);
             }
         }
         DikeLine both_ways{};
         if (!one_way_) {
             for (std::size_t m = x_in; m <= z_out; ++m) sum_up(m);
             for (std::size_t z = 0; z < 2 * N; ++z) {
-                both_ways[z] = Bits::over_steps(marks[x_in][z]) & Bits::over_steps(marks[x_out][z]) & Bits::over_samples(marks[y_in][z]) &
-                               Bits::over_samples(marks[y_out][z]) & Bits::over_samples(marks[z_in][z]) & Bits::over_samples(marks[z_out][z]);
+                both_ways[z] = Bits::over_steps(marks[x_in][z]) & Bits::over_steps(marks[x_out][z]) &
+                               Bits::over_samples(marks[y_in][z]) & Bits::over_samples(marks[y_out][z]) &
+                               Bits::over_samples(marks[z_in][z]) & Bits::over_samples(marks[z_out][z]);
             }
         }
-        const auto &low = corners_[static_cast<std::size_t>(Dike<N>::start(y))], &high = corners_[static_cast<std::size_t>(Dike<N>::end(y))];
+        const auto &low = corners_[static_cast<std::size_t>(Dike<N>::start(y))],
+                   &high = corners_[static_cast<std::size_t>(Dike<N>::end(y))];
         for (std::size_t z = 0; z < 2 * N; ++z) {
-            const BoxCorners<Word> box({low[0][z], low[1][z], high[0][z], high[1][z], low[2][z], low[3][z], high[2][z], high[3][z]});
+            const BoxCorners<Word> box(
+                {low[0][z], low[1][z], high[0][z], high[1][z], low[2][z], low[3][z], high[2][z], high[3][z]});
             nothing_[y][z] = ~(box.crossed | bad[z]);
             highrice_[y][z] = box.disk & ~bad[z] & ~both_ways[z];
         }
         if (Dike<N>::is_unit(y)) {
-            for (std::size_t z = N; z < 2 * N; ++z) highrice_[y][z] |= ~nothing_[y][z] & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
+            for (std::size_t z = N; z < 2 * N; ++z)
+                highrice_[y][z] |= ~nothing_[y][z] & static_cast<Word>(Bits::kUnits << (N - 1) << 1);
         }
         set_beyond(y, cells);
     }
@@ -253,9 +286,11 @@ class Survey {
         Word nothing[2], highrice[2];
 
         ISOCORE_INLINED std::array<Word, kSteps> at_most() const {
-            const Word one_split = ~(nothing[0] | highrice[0]), other_split = ~(nothing[1] | highrice[1]), none_split = ~(one_split | other_split);
+            const Word one_split = ~(nothing[0] | highrice[0]), other_split = ~(nothing[1] | highrice[1]),
+                       none_split = ~(one_split | other_split);
             const Word any_nothing = nothing[0] | nothing[1];
-            return {nothing[0] & nothing[1], none_split & any_nothing, none_split, none_split | any_nothing, ~(one_split & other_split)};
+            return {nothing[0] & nothing[1], none_split & any_nothing, none_split, none_split | any_nothing,
+                    ~(one_split & other_split)};
         }
     };
 
@@ -264,24 +299,28 @@ class Survey {
         const DikeLine &nothing = nothing_[y], &highrice = highrice_[y];
         for (std::size_t z = 0; z < 2 * N; ++z) {
             const auto along_x = Halves{{Bits::with_lower_half(nothing[z]), Bits::with_upper_half(nothing[z])},
-                                        {Bits::with_lower_half(highrice[z]), Bits::with_upper_half(highrice[z])}}.at_most();
+                                        {Bits::with_lower_half(highrice[z]), Bits::with_upper_half(highrice[z])}}
+                                     .at_most();
             for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] = along_x[n];
         }
         for (std::size_t z = 0; z < N; ++z) {
-            const auto along_z = Halves{{nothing[2 * z], nothing[2 * z + 1]}, {highrice[2 * z], highrice[2 * z + 1]}}.at_most();
+            const auto along_z =
+                Halves{{nothing[2 * z], nothing[2 * z + 1]}, {highrice[2 * z], highrice[2 * z + 1]}}.at_most();
             for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] |= along_z[n];
         }
         if (Dike<N>::is_unit(y)) return;
         for (std::size_t z = 0; z < 2 * N; ++z) {
-            const auto along_y = Halves{{nothing_[2 * y][z], nothing_[2 * y + 1][z]}, {highrice_[2 * y][z], highrice_[2 * y + 1][z]}}.at_most();
+            const auto along_y =
+                Halves{{nothing_[2 * y][z], nothing_[2 * y + 1][z]}, {highrice_[2 * y][z], highrice_[2 * y + 1][z]}}
+                    .at_most();
             for (std::size_t n = 0; n < kSteps; ++n) at_most_[n][y][z] |= along_y[n];
         }
     }
 
-    std::array<std::array<Line, 2 * N + 1>, kMarks> marks_;      // [mark][N + j], then [mark][y]
-    std::array<Line, 2 * N> again_y_;                            // ligns along y crossed several times: [y][k]
-    std::array<DikeLine, 2 * N + 1> again_z_;                    // along z: [N + j][z], then [y][z]
-    std::array<std::array<DikeLine, 4>, N + 1> corners_{};       // [j][start or end along x, then along z][z]
+    std::array<std::array<Line, 2 * N + 1>, kMarks> marks_;  // [mark][N + j], then [mark][y]
+    std::array<Line, 2 * N> again_y_;                        // ligns along y crossed several times: [y][k]
+    std::array<DikeLine, 2 * N + 1> again_z_;                // along z: [N + j][z], then [y][z]
+    std::array<std::array<DikeLine, 4>, N + 1> corners_{};   // [j][start or end along x, then along z][z]
     // A bit for each dike along x: does nothing cross the box, may it be one highrice, what do its halves cost? [y][z]
     using Boxes = std::array<DikeLine, 2 * N>;
     Boxes nothing_, highrice_;

@@ -1,4 +1,5 @@
-// cell_loops.hpp - How the surface crosses one cell: a table of cases, derived at compile time and proved in tests/kernels.
+// cell_loops.hpp - How the surface crosses one cell: a table of cases, derived at compile time and proved in
+// tests/kernels.
 //
 // A case is the eight corner signs and, for each face with alternating corners, whether its inside corners are
 // joined. Every face pairs its crossings by that alone, so the segments close to loops, and the cell across the face
@@ -28,14 +29,14 @@ template <int max_triangles>
 struct CaseOf {
     std::uint8_t triangles = 0;
     std::uint8_t loops = 0;
-    std::uint8_t middles = 0;  // loops that are cut from a vertex in their middle
+    std::uint8_t middles = 0;                             // loops that are cut from a vertex in their middle
     std::array<std::uint8_t, 3 * max_triangles> edges{};  // three per triangle; 12 + n is the n-th middle, always last
 };
 using Case = CaseOf<kMaxTriangles>;
 
 struct Corners {
-    std::uint16_t first = 0;      // its cases follow each other, by the decisions of its ambiguous faces
-    std::uint8_t ambiguous = 0;   // one bit per face with alternating corners
+    std::uint16_t first = 0;     // its cases follow each other, by the decisions of its ambiguous faces
+    std::uint8_t ambiguous = 0;  // one bit per face with alternating corners
 };
 
 template <class AnyCase>
@@ -62,7 +63,9 @@ constexpr std::array<int, 12> segments(unsigned corners, unsigned joined) {
     for (int face = 0; face < 6; ++face) {
         const auto ring = cube::face_ring(face);
         const auto in = [&](int n) { return (corners >> ring[static_cast<unsigned>(n & 3)] & 1) != 0; };
-        const auto edge = [&](int n) { return cube::edge_between(ring[static_cast<unsigned>(n & 3)], ring[static_cast<unsigned>((n + 1) & 3)]); };
+        const auto edge = [&](int n) {
+            return cube::edge_between(ring[static_cast<unsigned>(n & 3)], ring[static_cast<unsigned>((n + 1) & 3)]);
+        };
         const bool isolated = cube::alternates(corners, face) && !(joined >> face & 1);
         for (int n = 0; n < 4; ++n) {
             if (!in(n) || in(n + 1)) continue;
@@ -138,7 +141,8 @@ constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiag
     if (cost[0][static_cast<unsigned>(length - 1)] >= kForbidden) {
         if (rule != FaceDiagonals::none) throw "a loop has no legal triangulation";
         const int middle = 12 + out.middles++;
-        for (int i = 0; i < length; ++i) draw(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>((i + 1) % length)], middle);
+        for (int i = 0; i < length; ++i)
+            draw(loop[static_cast<unsigned>(i)], loop[static_cast<unsigned>((i + 1) % length)], middle);
         return;
     }
     std::array<std::array<int, 2>, 24> open{};
@@ -159,7 +163,8 @@ constexpr AnyCase derive_case(unsigned corners, unsigned joined, FaceDiagonals r
     const Loops loops = trace(corners, joined);
     AnyCase out;
     out.loops = static_cast<std::uint8_t>(loops.count);
-    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n) triangulate(loops.edges[n], loops.lengths[n], rule, out);
+    for (unsigned n = 0; n < static_cast<unsigned>(loops.count); ++n)
+        triangulate(loops.edges[n], loops.lengths[n], rule, out);
     return out;
 }
 

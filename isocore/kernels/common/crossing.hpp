@@ -24,11 +24,15 @@ struct Inside {
         lowest = kMin;
         highest = kMax;
         if (below) {
-            if (isovalue < static_cast<double>(kMin)) nothing = true;
-            else if (isovalue < static_cast<double>(kMax)) highest = rounded(isovalue, false);
+            if (isovalue < static_cast<double>(kMin))
+                nothing = true;
+            else if (isovalue < static_cast<double>(kMax))
+                highest = rounded(isovalue, false);
         } else {
-            if (isovalue > static_cast<double>(kMax)) nothing = true;
-            else if (isovalue > static_cast<double>(kMin)) lowest = rounded(isovalue, true);
+            if (isovalue > static_cast<double>(kMax))
+                nothing = true;
+            else if (isovalue > static_cast<double>(kMin))
+                lowest = rounded(isovalue, true);
         }
     }
 
@@ -41,8 +45,10 @@ struct Inside {
             return static_cast<Sample>(up ? std::ceil(isovalue) : std::floor(isovalue));
         } else {
             Sample nearest = static_cast<Sample>(isovalue);
-            if (up && static_cast<double>(nearest) < isovalue) nearest = std::nextafter(nearest, std::numeric_limits<Sample>::infinity());
-            if (!up && static_cast<double>(nearest) > isovalue) nearest = std::nextafter(nearest, -std::numeric_limits<Sample>::infinity());
+            if (up && static_cast<double>(nearest) < isovalue)
+                nearest = std::nextafter(nearest, std::numeric_limits<Sample>::infinity());
+            if (!up && static_cast<double>(nearest) > isovalue)
+                nearest = std::nextafter(nearest, -std::numeric_limits<Sample>::infinity());
             return nearest;
         }
     }

@@ -13,11 +13,13 @@ namespace isocore {
 
 // Are the inside corners of an alternating face of the cell at `cell` (padding included) joined?
 template <class Sample>
-bool face_joined(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners, const Dims& cell, int face) {
+bool face_joined(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners, const Dims& cell,
+                 int face) {
     const auto ring = cube::face_ring(face);
     const auto value = [&](std::size_t n) {
         const auto c = static_cast<std::size_t>(ring[n]);
-        return static_cast<double>(samples.at(cell[0] + (c & 1) - pad, cell[1] + (c >> 1 & 1) - pad, cell[2] + (c >> 2) - pad));
+        return static_cast<double>(
+            samples.at(cell[0] + (c & 1) - pad, cell[1] + (c >> 1 & 1) - pad, cell[2] + (c >> 2) - pad));
     };
     const std::size_t in = corners >> ring[0] & 1 ? 0 : 1;
     return inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue);
@@ -25,10 +27,12 @@ bool face_joined(const GridView<Sample>& samples, std::size_t pad, double isoval
 
 // The decisions of all alternating faces, packed as cell_loops::Corners wants them.
 template <class Sample>
-unsigned decide_faces(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners, const Dims& cell) {
+unsigned decide_faces(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners,
+                      const Dims& cell) {
     unsigned packed = 0, bit = 0;
     for (unsigned left = cell_loops::kTable.corners[corners].ambiguous; left != 0; left &= left - 1, ++bit) {
-        packed |= static_cast<unsigned>(face_joined(samples, pad, isovalue, corners, cell, std::countr_zero(left))) << bit;
+        packed |= static_cast<unsigned>(face_joined(samples, pad, isovalue, corners, cell, std::countr_zero(left)))
+                  << bit;
     }
     return packed;
 }

@@ -16,8 +16,8 @@ constexpr std::size_t kEdgesPerRange = 4096, kMaxRanges = 1024, kFewEdges = 48;
 
 struct Seen {
     std::int32_t low, high;
-    std::uint32_t place;   // in the order of all edges seen
-    std::int32_t vertex;   // within its range
+    std::uint32_t place;  // in the order of all edges seen
+    std::int32_t vertex;  // within its range
 };
 
 // Orders a range by lower point, keeping the order of places: a counting sort, or a comparison where points are many.
@@ -38,8 +38,9 @@ Array<Edge> number(Array<Seen>& range) {
     for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end) {
         while (end < range.size() && range[end].low == range[begin].low) ++end;
         if (end - begin > kFewEdges * kFewEdges) {
-            std::sort(range.begin() + static_cast<std::ptrdiff_t>(begin), range.begin() + static_cast<std::ptrdiff_t>(end),
-                      [](const Seen& a, const Seen& b) { return a.high != b.high ? a.high < b.high : a.place < b.place; });
+            std::sort(
+                range.begin() + static_cast<std::ptrdiff_t>(begin), range.begin() + static_cast<std::ptrdiff_t>(end),
+                [](const Seen& a, const Seen& b) { return a.high != b.high ? a.high < b.high : a.place < b.place; });
         }
         const std::size_t first = found.size();
         for (std::size_t n = begin; n < end; ++n) {
@@ -50,7 +51,8 @@ Array<Edge> number(Array<Seen>& range) {
             }
             // The last ones first: after a sort by the higher point the match, if any, is the last.
             std::size_t match = found.size();
-            while (match > first && found[match - 1].high != edge.high && !(end - begin > kFewEdges * kFewEdges)) --match;
+            while (match > first && found[match - 1].high != edge.high && !(end - begin > kFewEdges * kFewEdges))
+                --match;
             if (match > first && found[match - 1].high == edge.high) {
                 edge.vertex = static_cast<std::int32_t>(match - 1);
             } else {
@@ -89,7 +91,8 @@ Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int
         sorted[range].resize(size);
     }
     std::vector<std::uint32_t> first_place(seen.size());
-    for (std::size_t run = 1; run < seen.size(); ++run) first_place[run] = first_place[run - 1] + static_cast<std::uint32_t>(seen[run - 1].size());
+    for (std::size_t run = 1; run < seen.size(); ++run)
+        first_place[run] = first_place[run - 1] + static_cast<std::uint32_t>(seen[run - 1].size());
     parallel_for(threads, seen.size(), [&](std::size_t run) {
         std::uint32_t place = first_place[run];
         for (const Edge& edge : seen[run]) {
@@ -104,7 +107,8 @@ Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int
         found[range] = number(sorted[range]);
     });
     std::vector<std::size_t> first_vertex(ranges + 1);
-    for (std::size_t range = 0; range < ranges; ++range) first_vertex[range + 1] = first_vertex[range] + found[range].size();
+    for (std::size_t range = 0; range < ranges; ++range)
+        first_vertex[range + 1] = first_vertex[range] + found[range].size();
     if (first_vertex[ranges] > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
         throw std::length_error("the surface has more vertices than 2^31 - 1; choose another isovalue");
     }
@@ -114,7 +118,8 @@ Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int
     parallel_for(threads, ranges, [&](std::size_t range) {
         const auto first = static_cast<std::int32_t>(first_vertex[range]);
         std::copy(found[range].begin(), found[range].end(), merged.edges.begin() + first);
-        for (const Seen& edge : sorted[range]) merged.vertex_of[edge.place] = edge.vertex < 0 ? -1 : first + edge.vertex;
+        for (const Seen& edge : sorted[range])
+            merged.vertex_of[edge.place] = edge.vertex < 0 ? -1 : first + edge.vertex;
     });
     return merged;
 }

@@ -16,8 +16,8 @@ struct Edge {
 };
 
 struct Merged {
-    Array<Edge> edges;                // one per vertex
-    Array<std::int32_t> vertex_of;    // one per edge seen
+    Array<Edge> edges;              // one per vertex
+    Array<std::int32_t> vertex_of;  // one per edge seen
 };
 
 // `seen` comes in runs that were found apart; `points` is the number of points.

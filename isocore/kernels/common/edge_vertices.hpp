@@ -37,14 +37,15 @@ inline double border_crossing(const SignGrid& signs, int axis, std::size_t i, st
 
 // The lower sample of a grid edge that is not in the padding.
 template <class Sample>
-const Sample* edge_start(const GridView<Sample>& samples, const SignGrid& signs, std::size_t i, std::size_t j, std::size_t k) {
+const Sample* edge_start(const GridView<Sample>& samples, const SignGrid& signs, std::size_t i, std::size_t j,
+                         std::size_t k) {
     return samples.data + samples.index(i - signs.pad, j - signs.pad, k - signs.pad);
 }
 
 // Where the grid edge along `axis` that starts at sample (i, j, k) is crossed, as a share of the way.
 template <class Sample>
-double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
-                     std::size_t k) {
+double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i,
+                     std::size_t j, std::size_t k) {
     if (const double share = border_crossing(signs, axis, i, j, k); share > 0) return share;
     const Sample* low = edge_start(samples, signs, i, j, k);
     return crossing(low[0], low[samples.step(axis)], isovalue);
@@ -55,13 +56,15 @@ struct Quotient {
     float part, whole;
 };
 template <class Sample>
-Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
-                       std::size_t k) {
+Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i,
+                       std::size_t j, std::size_t k) {
     if constexpr (std::is_integral_v<Sample>) {
-        if (const double share = border_crossing(signs, axis, i, j, k); share > 0) return {static_cast<float>(share), 1};
+        if (const double share = border_crossing(signs, axis, i, j, k); share > 0)
+            return {static_cast<float>(share), 1};
         const Sample* low = edge_start(samples, signs, i, j, k);
         const double from = static_cast<double>(low[0]);
-        return {static_cast<float>(isovalue - from), static_cast<float>(static_cast<double>(low[samples.step(axis)]) - from)};
+        return {static_cast<float>(isovalue - from),
+                static_cast<float>(static_cast<double>(low[samples.step(axis)]) - from)};
     } else {
         return {static_cast<float>(edge_crossing(samples, signs, isovalue, axis, i, j, k)), 1};
     }
@@ -69,12 +72,13 @@ Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, d
 
 // Writes the vertex on that edge, and returns its end.
 template <class Sample, class Coordinate>
-Coordinate* write_vertex(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis, std::size_t i, std::size_t j,
-                         std::size_t k, Coordinate* out) {
+Coordinate* write_vertex(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis,
+                         std::size_t i, std::size_t j, std::size_t k, Coordinate* out) {
     const double pad = static_cast<double>(signs.pad), share = edge_crossing(samples, signs, isovalue, axis, i, j, k);
     const std::array<std::size_t, 3> at{i, j, k};
     for (int a = 0; a < 3; ++a) {
-        *out++ = static_cast<Coordinate>(static_cast<double>(at[static_cast<std::size_t>(a)]) - pad + (a == axis ? share : 0.0));
+        *out++ = static_cast<Coordinate>(static_cast<double>(at[static_cast<std::size_t>(a)]) - pad +
+                                         (a == axis ? share : 0.0));
     }
     return out;
 }
@@ -91,7 +95,8 @@ Coordinate* write_row_vertices(const GridView<Sample>& samples, const SignGrid& 
     SetBits<Word, 32> found;
     const auto write = [&] {
         found.visit([&](const Word& word, int bit) {
-            out = write_vertex(samples, signs, isovalue, word.axis, word.first + static_cast<std::size_t>(bit), j, k, out);
+            out = write_vertex(samples, signs, isovalue, word.axis, word.first + static_cast<std::size_t>(bit), j, k,
+                               out);
         });
     };
     const auto find = [&](auto axis) {

@@ -16,7 +16,8 @@ void close_gaps(const Runs& runs, Array<std::int32_t>& triangles) {
     for (const auto& run : runs) {
         if (run.first_triangle != end) {
             const auto from = triangles.begin() + static_cast<std::ptrdiff_t>(3 * run.first_triangle);
-            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * run.triangles), triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
+            std::copy(from, from + static_cast<std::ptrdiff_t>(3 * run.triangles),
+                      triangles.begin() + static_cast<std::ptrdiff_t>(3 * end));
         }
         end += run.triangles;
     }

@@ -17,7 +17,9 @@ struct GridView {
     Sample at(std::size_t i, std::size_t j, std::size_t k) const { return data[index(i, j, k)]; }
     const Sample* row(std::size_t j, std::size_t k) const { return data + index(0, j, k); }
     // Samples between neighbours along an axis.
-    std::size_t step(int axis) const { return std::array<std::size_t, 3>{1, dims[0], dims[0] * dims[1]}[static_cast<std::size_t>(axis)]; }
+    std::size_t step(int axis) const {
+        return std::array<std::size_t, 3>{1, dims[0], dims[0] * dims[1]}[static_cast<std::size_t>(axis)];
+    }
     std::size_t size() const { return dims[0] * dims[1] * dims[2]; }
 };
 

@@ -1,5 +1,5 @@
-// lanes.hpp - Eight floats or four doubles at once. Every operation is that of its numbers one by one, so results are the
-// same bits with and without wide registers.
+// lanes.hpp - Eight floats or four doubles at once. Every operation is that of its numbers one by one, so results are
+// the same bits with and without wide registers.
 #pragma once
 
 #include <array>
@@ -59,7 +59,8 @@ struct LaneRegister<float> {
     static Type both(Type a, Type b) { return _mm256_and_ps(a, b); }
     static Type either(Type a, Type b) { return _mm256_or_ps(a, b); }
     static Type disjoint(Type a, Type b) {
-        return _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_castps_si256(_mm256_and_ps(a, b)), _mm256_setzero_si256()));
+        return _mm256_castsi256_ps(
+            _mm256_cmpeq_epi32(_mm256_castps_si256(_mm256_and_ps(a, b)), _mm256_setzero_si256()));
     }
     static Type tagged(Type a) {
         const Type lanes = _mm256_castsi256_ps(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
@@ -72,8 +73,10 @@ struct LaneRegister<float> {
     static Type rotate(Type a) { return _mm256_permutevar8x32_ps(a, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0)); }
     template <std::size_t distance>
     static Type swap(Type a) {
-        if constexpr (distance == 4) return _mm256_permute2f128_ps(a, a, 1);
-        else return _mm256_permute_ps(a, distance == 2 ? 0x4e : 0xb1);
+        if constexpr (distance == 4)
+            return _mm256_permute2f128_ps(a, a, 1);
+        else
+            return _mm256_permute_ps(a, distance == 2 ? 0x4e : 0xb1);
     }
     static void pack(Type a, unsigned bits, float* to) {
         const auto order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPackedLanes[bits].data()));
@@ -114,27 +117,61 @@ struct LaneRegister {
         for (std::size_t n = 0; n < kLanes<T>; ++n) out[n] = rule(n);
         return out;
     }
-    static Type load(const T* from) { return each([&](std::size_t n) { return from[n]; }); }
-    static Type all(T value) { return each([&](std::size_t) { return value; }); }
-    static void store(T* to, const Type& a) { each([&](std::size_t n) { return to[n] = a[n]; }); }
-    static Type add(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] + b[n]; }); }
-    static Type subtract(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] - b[n]; }); }
-    static Type multiply(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
-    static Type divide(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] / b[n]; }); }
-    static Type root(const Type& a) { return each([&](std::size_t n) { return std::sqrt(a[n]); }); }
-    static Type least(const Type& a, const Type& b) { return each([&](std::size_t n) { return b[n] < a[n] ? b[n] : a[n]; }); }
-    static Type greatest(const Type& a, const Type& b) { return each([&](std::size_t n) { return b[n] > a[n] ? b[n] : a[n]; }); }
-    static Type less(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] < b[n]); }); }
-    static Type not_above(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] <= b[n]); }); }
-    static Type equal(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] == b[n]); }); }
+    static Type load(const T* from) {
+        return each([&](std::size_t n) { return from[n]; });
+    }
+    static Type all(T value) {
+        return each([&](std::size_t) { return value; });
+    }
+    static void store(T* to, const Type& a) {
+        each([&](std::size_t n) { return to[n] = a[n]; });
+    }
+    static Type add(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return a[n] + b[n]; });
+    }
+    static Type subtract(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return a[n] - b[n]; });
+    }
+    static Type multiply(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return a[n] * b[n]; });
+    }
+    static Type divide(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return a[n] / b[n]; });
+    }
+    static Type root(const Type& a) {
+        return each([&](std::size_t n) { return std::sqrt(a[n]); });
+    }
+    static Type least(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return b[n] < a[n] ? b[n] : a[n]; });
+    }
+    static Type greatest(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return b[n] > a[n] ? b[n] : a[n]; });
+    }
+    static Type less(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return T(a[n] < b[n]); });
+    }
+    static Type not_above(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return T(a[n] <= b[n]); });
+    }
+    static Type equal(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return T(a[n] == b[n]); });
+    }
     static Type disjoint(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return T((std::bit_cast<std::uint32_t>(a[n]) & std::bit_cast<std::uint32_t>(b[n])) == 0); });
+        return each([&](std::size_t n) {
+            return T((std::bit_cast<std::uint32_t>(a[n]) & std::bit_cast<std::uint32_t>(b[n])) == 0);
+        });
     }
     static Type tagged(const Type& a) {
-        return each([&](std::size_t n) { return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a[n]) & ~7u) | static_cast<std::uint32_t>(n)); });
+        return each([&](std::size_t n) {
+            return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a[n]) & ~7u) | static_cast<std::uint32_t>(n));
+        });
     }
-    static Type both(const Type& a, const Type& b) { return each([&](std::size_t n) { return a[n] * b[n]; }); }
-    static Type either(const Type& a, const Type& b) { return each([&](std::size_t n) { return T(a[n] + b[n] > 0); }); }
+    static Type both(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return a[n] * b[n]; });
+    }
+    static Type either(const Type& a, const Type& b) {
+        return each([&](std::size_t n) { return T(a[n] + b[n] > 0); });
+    }
     static Type choose(const Type& mask, const Type& a, const Type& b) {
         return each([&](std::size_t n) { return mask[n] != 0 ? a[n] : b[n]; });
     }
@@ -198,9 +235,15 @@ struct Lanes {
     T fold(const Rule& rule) const {
         return folded<kLanes<T> / 2>(*this, rule);
     }
-    T sum() const { return fold([](const Lanes& a, const Lanes& b) { return a + b; }); }
-    T least_lane() const { return fold([](const Lanes& a, const Lanes& b) { return least(a, b); }); }
-    T greatest_lane() const { return fold([](const Lanes& a, const Lanes& b) { return greatest(a, b); }); }
+    T sum() const {
+        return fold([](const Lanes& a, const Lanes& b) { return a + b; });
+    }
+    T least_lane() const {
+        return fold([](const Lanes& a, const Lanes& b) { return least(a, b); });
+    }
+    T greatest_lane() const {
+        return fold([](const Lanes& a, const Lanes& b) { return greatest(a, b); });
+    }
 
     // Writes the lanes that have a bit, one after the other; what follows them in the room for all lanes is lost.
     void pack(unsigned bits, T* to) const { Register::pack(lanes, bits, to); }
@@ -214,14 +257,18 @@ struct Lanes {
     friend LaneMask<T> operator<=(const Lanes& a, const Lanes& b) { return {Register::not_above(a.lanes, b.lanes)}; }
     friend LaneMask<T> operator==(const Lanes& a, const Lanes& b) { return {Register::equal(a.lanes, b.lanes)}; }
     // Of floats: have their bits none in common?
-    friend LaneMask<T> have_no_bit_in_common(const Lanes& a, const Lanes& b) { return {Register::disjoint(a.lanes, b.lanes)}; }
+    friend LaneMask<T> have_no_bit_in_common(const Lanes& a, const Lanes& b) {
+        return {Register::disjoint(a.lanes, b.lanes)};
+    }
     // Floats with their lane in the last three bits: the least one tells where it is.
     friend Lanes tagged(const Lanes& a) { return Lanes(Register::tagged(a.lanes)); }
     // The first `count` lanes of a, and the others of b.
     friend Lanes first_lanes(const Lanes& a, std::size_t count, const Lanes& b) {
         return choose(Lanes(kLaneNumbers<T>.data()) < static_cast<T>(count), a, b);
     }
-    friend Lanes choose(const LaneMask<T>& mask, const Lanes& a, const Lanes& b) { return Lanes(Register::choose(mask.lanes, a.lanes, b.lanes)); }
+    friend Lanes choose(const LaneMask<T>& mask, const Lanes& a, const Lanes& b) {
+        return Lanes(Register::choose(mask.lanes, a.lanes, b.lanes));
+    }
     // Lanes of b that are no numbers are passed over.
     friend Lanes least(const Lanes& a, const Lanes& b) { return Lanes(Register::least(a.lanes, b.lanes)); }
     friend Lanes greatest(const Lanes& a, const Lanes& b) { return Lanes(Register::greatest(a.lanes, b.lanes)); }
@@ -229,8 +276,10 @@ struct Lanes {
   private:
     template <std::size_t distance, class Rule>
     static T folded(const Lanes& a, const Rule& rule) {
-        if constexpr (distance == 0) return Register::first(a.lanes);
-        else return folded<distance / 2>(rule(a, Lanes(Register::template swap<distance>(a.lanes))), rule);
+        if constexpr (distance == 0)
+            return Register::first(a.lanes);
+        else
+            return folded<distance / 2>(rule(a, Lanes(Register::template swap<distance>(a.lanes))), rule);
     }
 };
 

@@ -72,7 +72,8 @@ inline constexpr std::array<TetCase, 16> kTetCases = [] {
 }();
 
 using HexCase = cell_loops::CaseOf<12>;
-inline constexpr cell_loops::TableOf<HexCase> kHexCases = cell_loops::derivation::derive<HexCase>(cell_loops::FaceDiagonals::none);
+inline constexpr cell_loops::TableOf<HexCase> kHexCases =
+    cell_loops::derivation::derive<HexCase>(cell_loops::FaceDiagonals::none);
 
 // The case of a tetrahedron needs its signs only.
 template <class Values>
@@ -89,7 +90,9 @@ const HexCase& drawn(Hex, Mask signs, const Values& values, double isovalue) {
         const auto ring = cube::face_ring(std::countr_zero(left));
         const auto value = [&](unsigned n) { return values(static_cast<std::size_t>(ring[n])); };
         const unsigned in = signs >> ring[0] & 1 ? 0 : 1;
-        packed |= static_cast<unsigned>(inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue)) << bit;
+        packed |= static_cast<unsigned>(
+                      inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue))
+                  << bit;
     }
     return kHexCases.cases[entry.first + packed];
 }

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/cell_loops.hpp"
 #include "common/crossing.hpp"
 #include "common/cube.hpp"
-#include "common/cell_loops.hpp"
 
 namespace isocore::mesh {
 
@@ -57,7 +57,8 @@ struct Hex {
         Shape<kCorners, kEdges, kFaces> shape;
         for (std::size_t e = 0; e < kEdges; ++e) {
             const int edge = static_cast<int>(e);
-            shape.ends[e] = {static_cast<std::uint8_t>(cube::low_corner(edge)), static_cast<std::uint8_t>(cube::high_corner(edge))};
+            shape.ends[e] = {static_cast<std::uint8_t>(cube::low_corner(edge)),
+                             static_cast<std::uint8_t>(cube::high_corner(edge))};
         }
         for (std::size_t f = 0; f < kFaces; ++f) {
             for (const int corner : cube::face_ring(static_cast<int>(f))) shape.face_corners[f] |= Mask{1} << corner;
@@ -79,7 +80,8 @@ constexpr auto kCrossedEdges = [] {  // by corner signs
     for (std::size_t signs = 0; signs < crossed.size(); ++signs) {
         for (std::size_t e = 0; e < Cell::kEdges; ++e) {
             const auto& ends = Cell::kShape.ends[e];
-            if ((signs >> ends[0] ^ signs >> ends[1]) & 1) crossed[signs] = static_cast<std::uint16_t>(crossed[signs] | 1u << e);
+            if ((signs >> ends[0] ^ signs >> ends[1]) & 1)
+                crossed[signs] = static_cast<std::uint16_t>(crossed[signs] | 1u << e);
         }
     }
     return crossed;

@@ -32,7 +32,8 @@ struct Field {
     void cross(std::int32_t a, std::int32_t b, double isovalue, Coordinate* out) const {
         const double t = crossing(value(a), value(b), isovalue);
         const double *from = point(a), *to = point(b);
-        for (int axis = 0; axis < 3; ++axis) out[axis] = static_cast<Coordinate>(from[axis] + t * (to[axis] - from[axis]));
+        for (int axis = 0; axis < 3; ++axis)
+            out[axis] = static_cast<Coordinate>(from[axis] + t * (to[axis] - from[axis]));
     }
 };
 

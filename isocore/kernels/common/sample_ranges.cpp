@@ -26,8 +26,12 @@ class Range {
         for (; n < count; ++n) add(samples[n], 0);
     }
 
-    Sample lowest() const { return unknown() ? -std::numeric_limits<Sample>::infinity() : *std::min_element(lowest_, lowest_ + kLanes); }
-    Sample highest() const { return unknown() ? std::numeric_limits<Sample>::infinity() : *std::max_element(highest_, highest_ + kLanes); }
+    Sample lowest() const {
+        return unknown() ? -std::numeric_limits<Sample>::infinity() : *std::min_element(lowest_, lowest_ + kLanes);
+    }
+    Sample highest() const {
+        return unknown() ? std::numeric_limits<Sample>::infinity() : *std::max_element(highest_, highest_ + kLanes);
+    }
 
   private:
     static constexpr std::size_t kLanes = 16;
@@ -37,7 +41,9 @@ class Range {
         highest_[lane] = sample > highest_[lane] ? sample : highest_[lane];
         unknown_[lane] |= sample != sample;
     }
-    bool unknown() const { return std::any_of(unknown_, unknown_ + kLanes, [](int lane) { return lane != 0; }); }
+    bool unknown() const {
+        return std::any_of(unknown_, unknown_ + kLanes, [](int lane) { return lane != 0; });
+    }
 
     Sample lowest_[kLanes], highest_[kLanes];
     int unknown_[kLanes] = {};

@@ -18,7 +18,9 @@ inline std::size_t range_block(const Dims& dims, std::size_t i, std::size_t j, s
 }
 
 // How many numbers sample_ranges() gives.
-inline std::size_t range_count(const Dims& dims) { return 2 * (range_block(dims, dims[0] - 1, dims[1] - 1, dims[2] - 1) + 1); }
+inline std::size_t range_count(const Dims& dims) {
+    return 2 * (range_block(dims, dims[0] - 1, dims[1] - 1, dims[2] - 1) + 1);
+}
 
 // The lowest and the highest sample of each block, by turns. A block with a NaN goes from -infinity to infinity.
 template <class Sample>

@@ -4,9 +4,9 @@
 #include <cstdint>
 
 // use(Sample) for each of them: to instantiate what is declared for any sample.
-#define ISOCORE_FOR_EACH_SAMPLE_TYPE(use) \
-    use(std::uint8_t) use(std::int8_t) use(std::uint16_t) use(std::int16_t) \
-    use(std::uint32_t) use(std::int32_t) use(float) use(double)
+#define ISOCORE_FOR_EACH_SAMPLE_TYPE(use)                                                                        \
+    use(std::uint8_t) use(std::int8_t) use(std::uint16_t) use(std::int16_t) use(std::uint32_t) use(std::int32_t) \
+        use(float) use(double)
 
 namespace isocore {
 

@@ -1,5 +1,5 @@
-// set_bits.hpp - Visits the set bits of several words, one after the other, without a branch for every word: whether one
-// has any, and how many, a processor cannot guess.
+// set_bits.hpp - Visits the set bits of several words, one after the other, without a branch for every word: whether
+// one has any, and how many, a processor cannot guess.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct TaggedWord {
     Tag tag;
 };
 
-// Adds words that have bits to a list; a local variable, so that it can live in registers. What it added counts once it is
-// gone. There is room for one more than can be added.
+// Adds words that have bits to a list; a local variable, so that it can live in registers. What it added counts once it
+// is gone. There is room for one more than can be added.
 template <class Tag>
 class WordAdder {
   public:

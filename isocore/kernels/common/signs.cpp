@@ -66,13 +66,17 @@ void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>
 
 // The same with the ranges of the row's blocks.
 template <class Sample>
-void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>& inside, const Sample* ranges, std::uint64_t* words) {
+void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>& inside, const Sample* ranges,
+                  std::uint64_t* words) {
     for (std::size_t i = 0; i < count; i += 64, ranges += 2) {
         const std::size_t here = std::min<std::size_t>(64, count - i);
         const Sample lowest = ranges[0], highest = ranges[1];
-        if (lowest > inside.highest || highest < inside.lowest) words[i / 64] = 0;
-        else if (lowest >= inside.lowest && highest <= inside.highest) words[i / 64] = ~std::uint64_t{0} >> (64 - here);
-        else classify_row(samples + i, here, inside, words + i / 64);
+        if (lowest > inside.highest || highest < inside.lowest)
+            words[i / 64] = 0;
+        else if (lowest >= inside.lowest && highest <= inside.highest)
+            words[i / 64] = ~std::uint64_t{0} >> (64 - here);
+        else
+            classify_row(samples + i, here, inside, words + i / 64);
     }
 }
 
@@ -86,7 +90,8 @@ void shift_by_one(std::uint64_t* row, std::size_t samples, std::size_t words) {
 }  // namespace
 
 template <class Sample>
-SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges) {
+SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads,
+                  const Sample* ranges) {
     const std::size_t pad = padded ? 1 : 0;
     const Dims dims{samples.dims[0] + 2 * pad, samples.dims[1] + 2 * pad, samples.dims[2] + 2 * pad};
     SignGrid grid{dims, pad, (dims[0] + 7) / 8, (dims[0] + 63) / 64, {}};
@@ -105,8 +110,11 @@ SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool pa
         if (pad && (k == 0 || k + 1 == dims[2])) return;
         for (std::size_t j = 0; j < samples.dims[1]; ++j) {
             const Sample* from = samples.row(j, k - pad);
-            if (ranges) classify_row(from, samples.dims[0], inside, ranges + 2 * range_block(samples.dims, 0, j, k - pad), row.data());
-            else classify_row(from, samples.dims[0], inside, row.data());
+            if (ranges)
+                classify_row(from, samples.dims[0], inside, ranges + 2 * range_block(samples.dims, 0, j, k - pad),
+                             row.data());
+            else
+                classify_row(from, samples.dims[0], inside, row.data());
             if (pad) shift_by_one(row.data(), samples.dims[0], grid.words);
             std::uint8_t* const out = rows + grid.stride * (j + pad);
             store_bits(row.data(), out, grid.stride);

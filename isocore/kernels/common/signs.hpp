@@ -1,8 +1,8 @@
 // signs.hpp - The sign of every sample as one bit: what the marching and climbing kernels really run on.
-// Sample (i, j, k) is bit i % 8 of byte i / 8 of row (j, k). Rows are rounded to whole bytes and no more, as signs are most
-// of what a kernel needs beyond the volume and the surface; words of 64 are read from any byte on. A padded grid has one more
-// layer of outside samples on every side, which closes the surface at the border: its sample (i, j, k) is the volume's
-// (i - 1, j - 1, k - 1).
+// Sample (i, j, k) is bit i % 8 of byte i / 8 of row (j, k). Rows are rounded to whole bytes and no more, as signs are
+// most of what a kernel needs beyond the volume and the surface; words of 64 are read from any byte on. A padded grid
+// has one more layer of outside samples on every side, which closes the surface at the border: its sample (i, j, k) is
+// the volume's (i - 1, j - 1, k - 1).
 #pragma once
 
 #include <algorithm>
@@ -35,9 +35,9 @@ class SignRow {
 struct SignGrid {
     static constexpr std::size_t kBeyond = 16;  // bytes that may be read after the last row
 
-    Dims dims;                   // samples per axis, padding included
-    std::size_t pad;             // 0 or 1
-    std::size_t stride, words;   // per row: bytes, and words if they were rounded to these
+    Dims dims;                  // samples per axis, padding included
+    std::size_t pad;            // 0 or 1
+    std::size_t stride, words;  // per row: bytes, and words if they were rounded to these
     Array<std::uint8_t> bytes;
 
     SignRow row(std::size_t j, std::size_t k) const { return SignRow(bytes.data() + stride * (j + dims[1] * k)); }
@@ -52,6 +52,7 @@ struct SignGrid {
 // Instantiated in signs.cpp for the eight sample types. `below`: inside is sample <= isovalue. With the `ranges` that
 // sample_ranges() gave, the samples of blocks that lie on one side are not read.
 template <class Sample>
-SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads, const Sample* ranges = nullptr);
+SignGrid classify(GridView<Sample> samples, double isovalue, bool below, bool padded, int threads,
+                  const Sample* ranges = nullptr);
 
 }  // namespace isocore

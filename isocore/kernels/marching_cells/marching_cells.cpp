@@ -2,8 +2,8 @@
 //
 // Tetrahedra: A. Doi, A. Koide, "An Efficient Method of Triangulating Equi-Valued Surfaces by Using Tetrahedral Cells",
 // IEICE Transactions E74(1), 1991. Hexahedra: W. Lorensen, H. Cline, "Marching Cubes", SIGGRAPH 1987, with the
-// asymptotic decider of G. Nielson, B. Hamann, Visualization 1991. Every sign is computed once per point, every chunk of cells is
-// scanned for itself, and the crossed edges are merged by sorting, so threads need no locks.
+// asymptotic decider of G. Nielson, B. Hamann, Visualization 1991. Every sign is computed once per point, every chunk
+// of cells is scanned for itself, and the crossed edges are merged by sorting, so threads need no locks.
 #include "marching_cells/marching_cells.hpp"
 
 #include <algorithm>
@@ -48,11 +48,13 @@ struct Drawn {
 };
 
 template <class Cell, class Value>
-void draw_cell(const Field<Value>& field, const std::int32_t* corners, const std::uint8_t* signs, double isovalue, Drawn& out) {
+void draw_cell(const Field<Value>& field, const std::int32_t* corners, const std::uint8_t* signs, double isovalue,
+               Drawn& out) {
     const CornerIds<Cell> ids = mesh::upright<Cell>(field, corners);
     mesh::Mask mask = 0;
     for (std::size_t n = 0; n < Cell::kCorners; ++n) mask |= static_cast<mesh::Mask>(signs[ids[n]]) << n;
-    const auto& drawn = mesh::drawn(Cell{}, mask, [&](std::size_t n) { return static_cast<double>(field.value(ids[n])); }, isovalue);
+    const auto& drawn =
+        mesh::drawn(Cell{}, mask, [&](std::size_t n) { return static_cast<double>(field.value(ids[n])); }, isovalue);
     std::array<std::uint32_t, Cell::kEdges> place;
     for (mesh::Mask left = mesh::kCrossedEdges<Cell>[mask]; left != 0; left &= left - 1) {
         const auto edge = static_cast<std::size_t>(std::countr_zero(left));
@@ -79,7 +81,8 @@ void draw_cell(const Field<Value>& field, const std::int32_t* corners, const std
 }
 
 template <class Cell, class Value>
-Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size_t count, const std::uint8_t* signs, double isovalue) {
+Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size_t count, const std::uint8_t* signs,
+                 double isovalue) {
     Array<std::uint32_t> active(count);
     std::size_t found = 0;
     for (std::size_t cell = 0; cell < count; ++cell) {
@@ -92,7 +95,8 @@ Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size
     Drawn out;
     out.edges.reserve(4 * found);
     out.triangles.reserve(6 * found);
-    for (std::size_t n = 0; n < found; ++n) draw_cell<Cell>(field, cells + Cell::kCorners * active[n], signs, isovalue, out);
+    for (std::size_t n = 0; n < found; ++n)
+        draw_cell<Cell>(field, cells + Cell::kCorners * active[n], signs, isovalue, out);
     return out;
 }
 
@@ -100,7 +104,8 @@ Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size
 template <class Coordinate>
 class Joiner {
   public:
-    Joiner(std::vector<Drawn>& drawn, const Merged& merged, Mesh<Coordinate>& mesh) : drawn_(drawn), merged_(merged), mesh_(mesh), places_(drawn.size()) {
+    Joiner(std::vector<Drawn>& drawn, const Merged& merged, Mesh<Coordinate>& mesh)
+        : drawn_(drawn), merged_(merged), mesh_(mesh), places_(drawn.size()) {
         std::size_t edge = 0, triangle = 0, middle = merged.edges.size();
         for (std::size_t n = 0; n < drawn.size(); ++n) {
             places_[n] = {edge, triangle, middle};
@@ -120,7 +125,8 @@ class Joiner {
         const Places& place = places_[chunk];
         const std::int32_t* vertex_of = merged_.vertex_of.data() + place.edge;
         const auto vertex = [&](std::uint32_t corner) {
-            return corner < Drawn::kMiddles ? vertex_of[corner] : static_cast<std::int32_t>(place.middle + (corner - Drawn::kMiddles));
+            return corner < Drawn::kMiddles ? vertex_of[corner]
+                                            : static_cast<std::int32_t>(place.middle + (corner - Drawn::kMiddles));
         };
         std::int32_t* out = mesh_.triangles.data() + place.triangle;
         for (std::size_t n = 0; n < from.triangles.size(); ++n) out[n] = vertex(from.triangles[n]);
@@ -132,7 +138,8 @@ class Joiner {
                 for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += static_cast<double>(corner[axis]);
             }
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                mesh_.vertices[3 * (place.middle + n) + axis] = static_cast<Coordinate>(sum[axis] / (from.middles[n][1] - from.middles[n][0]));
+                mesh_.vertices[3 * (place.middle + n) + axis] =
+                    static_cast<Coordinate>(sum[axis] / (from.middles[n][1] - from.middles[n][0]));
             }
         }
     }
@@ -153,7 +160,9 @@ void drop_collapsed(Array<std::int32_t>& triangles) {
     for (std::size_t n = 0; n < triangles.size(); n += 3) {
         const std::int32_t a = triangles[n], b = triangles[n + 1], c = triangles[n + 2];
         if (a == b || b == c || c == a) continue;
-        if (end != n) std::copy_n(triangles.begin() + static_cast<std::ptrdiff_t>(n), 3, triangles.begin() + static_cast<std::ptrdiff_t>(end));
+        if (end != n)
+            std::copy_n(triangles.begin() + static_cast<std::ptrdiff_t>(n), 3,
+                        triangles.begin() + static_cast<std::ptrdiff_t>(end));
         end += 3;
     }
     triangles.resize(end);
@@ -164,14 +173,16 @@ void drop_collapsed(Array<std::int32_t>& triangles) {
 template <class Coordinate, class Value>
 Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double isovalue, int threads) {
     const Array<std::uint8_t> signs = classify(field, isovalue, threads);
-    const std::size_t tet_chunks = (cells.tet_count + kChunk - 1) / kChunk, hex_chunks = (cells.hex_count + kChunk - 1) / kChunk;
+    const std::size_t tet_chunks = (cells.tet_count + kChunk - 1) / kChunk,
+                      hex_chunks = (cells.hex_count + kChunk - 1) / kChunk;
     std::vector<Drawn> drawn(tet_chunks + hex_chunks);
     parallel_for(threads, drawn.size(), [&](std::size_t chunk) {
         const bool tets = chunk < tet_chunks;
         const std::size_t first = kChunk * (tets ? chunk : chunk - tet_chunks);
         const std::size_t count = std::min(kChunk, (tets ? cells.tet_count : cells.hex_count) - first);
-        drawn[chunk] = tets ? draw_chunk<Tet>(field, cells.tets + Tet::kCorners * first, count, signs.data(), isovalue)
-                            : draw_chunk<Hex>(field, cells.hexes + Hex::kCorners * first, count, signs.data(), isovalue);
+        drawn[chunk] = tets
+                           ? draw_chunk<Tet>(field, cells.tets + Tet::kCorners * first, count, signs.data(), isovalue)
+                           : draw_chunk<Hex>(field, cells.hexes + Hex::kCorners * first, count, signs.data(), isovalue);
     });
     std::vector<Array<Edge>> seen(drawn.size());
     for (std::size_t n = 0; n < drawn.size(); ++n) seen[n] = std::move(drawn[n].edges);
@@ -183,7 +194,8 @@ Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double iso
     const std::size_t vertices = merged.edges.size();
     parallel_for(threads, vertices / kChunk + 1, [&](std::size_t chunk) {
         const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);
-        for (std::size_t n = chunk * kChunk; n < end; ++n) field.cross(merged.edges[n].low, merged.edges[n].high, isovalue, mesh.vertices.data() + 3 * n);
+        for (std::size_t n = chunk * kChunk; n < end; ++n)
+            field.cross(merged.edges[n].low, merged.edges[n].high, isovalue, mesh.vertices.data() + 3 * n);
     });
     parallel_for(threads, drawn.size(), [&](std::size_t chunk) { joiner.join(chunk); });
     for (const Drawn& chunk : drawn) mesh.intersected += chunk.intersected;

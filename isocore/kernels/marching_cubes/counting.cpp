@@ -15,7 +15,8 @@ namespace {
 
 class Counter {
   public:
-    Counter(const SignGrid& signs, std::vector<RowBase>& bases, bool tubes) : signs_(signs), bases_(bases), tubes_(tubes) {}
+    Counter(const SignGrid& signs, std::vector<RowBase>& bases, bool tubes)
+        : signs_(signs), bases_(bases), tubes_(tubes) {}
 
     // Fills the bases of plane k with counts (number() turns them into numbers) and returns its sums.
     LayerCount count(std::size_t k) const {
@@ -25,7 +26,8 @@ class Counter {
         for (std::size_t j = 0; j < rows; ++j) {
             RowBase counts{};
             for (std::size_t w = 0; w < signs_.words; ++w) {
-                for (int axis = 0; axis < 3; ++axis) counts[static_cast<std::size_t>(axis)] += ones(crossed_edges(signs_, axis, j, k, w));
+                for (int axis = 0; axis < 3; ++axis)
+                    counts[static_cast<std::size_t>(axis)] += ones(crossed_edges(signs_, axis, j, k, w));
             }
             bases_[j + rows * k] = counts;
             sum.vertices += std::size_t{counts[0]} + counts[1] + counts[2];
@@ -45,7 +47,8 @@ class Counter {
             active += ones(cells);
             for (int n = 0; n < 4; ++n) crossed += ones((rows.here(n, w) ^ rows.next(n, w)) & valid);
             for (const auto [a, b] : kAcross) {
-                crossed += ones((rows.here(a, w) ^ rows.here(b, w)) & valid) + ones((rows.next(a, w) ^ rows.next(b, w)) & valid);
+                crossed += ones((rows.here(a, w) ^ rows.here(b, w)) & valid) +
+                           ones((rows.next(a, w) ^ rows.next(b, w)) & valid);
             }
         }
         return tubes_ ? crossed : crossed - 2 * active;
@@ -69,7 +72,8 @@ std::vector<LayerCount> count_layers(const SignGrid& signs, std::vector<RowBase>
 
 void number_vertices(std::vector<RowBase>& bases, std::size_t total) {
     if (total > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-        throw std::length_error("the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
+        throw std::length_error(
+            "the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
     }
     std::uint32_t next = 0;
     for (RowBase& row : bases) {

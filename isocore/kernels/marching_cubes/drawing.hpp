@@ -34,8 +34,8 @@ class Drawer {
         const Rows rows(signs_, j, k);
         const std::size_t row = j + signs_.dims[1] * k, above = row + signs_.dims[1];
         // Numbers of the first crossing, of this row of cells, along: x (4 rows), y (2 planes), z (2 rows).
-        std::array<std::uint32_t, 8> base{bases_[row][0],   bases_[row + 1][0], bases_[above][0], bases_[above + 1][0],
-                                          bases_[row][1],   bases_[above][1],   bases_[row][2],   bases_[row + 1][2]};
+        std::array<std::uint32_t, 8> base{bases_[row][0], bases_[row + 1][0], bases_[above][0], bases_[above + 1][0],
+                                          bases_[row][1], bases_[above][1],   bases_[row][2],   bases_[row + 1][2]};
         for (std::size_t w = 0; w < signs_.words; ++w) {
             const Word valid = signs_.valid(w, 1), in_row = signs_.valid(w);
             std::array<Word, 4> here, next;
@@ -43,13 +43,15 @@ class Drawer {
                 here[static_cast<std::size_t>(n)] = rows.here(n, w);
                 next[static_cast<std::size_t>(n)] = rows.next(n, w);
             }
-            const std::array<Word, 8> crossed{(here[0] ^ next[0]) & valid,  (here[1] ^ next[1]) & valid,  (here[2] ^ next[2]) & valid,
-                                              (here[3] ^ next[3]) & valid,  (here[0] ^ here[1]) & in_row, (here[2] ^ here[3]) & in_row,
+            const std::array<Word, 8> crossed{(here[0] ^ next[0]) & valid,  (here[1] ^ next[1]) & valid,
+                                              (here[2] ^ next[2]) & valid,  (here[3] ^ next[3]) & valid,
+                                              (here[0] ^ here[1]) & in_row, (here[2] ^ here[3]) & in_row,
                                               (here[0] ^ here[2]) & in_row, (here[1] ^ here[3]) & in_row};
             for (Word left = rows.active(w, valid); left != 0; left &= left - 1) {
                 const int x = std::countr_zero(left);
                 unsigned corners = 0;
-                for (unsigned n = 0; n < 4; ++n) corners |= static_cast<unsigned>((here[n] >> x & 1) | (next[n] >> x & 1) << 1) << 2 * n;
+                for (unsigned n = 0; n < 4; ++n)
+                    corners |= static_cast<unsigned>((here[n] >> x & 1) | (next[n] >> x & 1) << 1) << 2 * n;
                 const std::size_t i = 64 * w + static_cast<std::size_t>(x);
                 const cell_loops::Case& drawn = decided(corners, i, j, k);
                 const auto numbers = edge_numbers(base, crossed, x);
@@ -85,7 +87,8 @@ class Drawer {
     }
 
     // The vertex numbers of a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
-    static std::array<std::uint32_t, 12> edge_numbers(const std::array<std::uint32_t, 8>& base, const std::array<Word, 8>& crossed, int x) {
+    static std::array<std::uint32_t, 12> edge_numbers(const std::array<std::uint32_t, 8>& base,
+                                                      const std::array<Word, 8>& crossed, int x) {
         const Word below = (Word{1} << x) - 1;
         std::array<std::uint32_t, 12> numbers;
         for (std::size_t n = 0; n < 4; ++n) numbers[n] = base[n] + ones(crossed[n] & below);
@@ -102,7 +105,8 @@ class Drawer {
         if (entry.ambiguous == 0) return cell_loops::kTable.cases[entry.first];
         ++ambiguous_cells;
         ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
-        return cell_loops::kTable.cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
+        return cell_loops::kTable
+            .cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
     }
 
     // The tube of a cell of several loops, or null. Beyond the border everything is outside, and nothing meets there.
@@ -113,7 +117,8 @@ class Drawer {
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 if (at[axis] < signs_.pad || at[axis] >= signs_.dims[axis] - signs_.pad) return nullptr;
             }
-            const auto sample = static_cast<double>(samples_.at(at[0] - signs_.pad, at[1] - signs_.pad, at[2] - signs_.pad));
+            const auto sample =
+                static_cast<double>(samples_.at(at[0] - signs_.pad, at[1] - signs_.pad, at[2] - signs_.pad));
             values[c] = below_ ? isovalue_ - sample : sample - isovalue_;
             if (!std::isfinite(values[c])) return nullptr;
         }

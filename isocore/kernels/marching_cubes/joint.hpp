@@ -1,8 +1,8 @@
 // joint.hpp - Does the trilinear function join two corners of a cell through its middle?
 //
 // In a slice across an axis the function is bilinear, and the asymptotic decider tells which diagonal pair of the four
-// edges along the axis it joins: the sign of q(t) = A C - B D of the edges' values, a quadratic. On the cell's faces two
-// groups of corners stay apart, so where a slice joins them q changes its sign and back, and its extremum lies
+// edges along the axis it joins: the sign of q(t) = A C - B D of the edges' values, a quadratic. On the cell's faces
+// two groups of corners stay apart, so where a slice joins them q changes its sign and back, and its extremum lies
 // between. Every part of a slice's inside reaches one of the four edges, so slices along one axis see all. The
 // discriminant of q is the same for all three axes (Cayley's hyperdeterminant of the eight corners).
 #pragma once

@@ -45,8 +45,8 @@ std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t 
 }
 
 template <bool tubes, class Sample, class Coordinate>
-void draw_slabs(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, const Options& options,
-                std::vector<Slab>& slabs, Mesh<Coordinate>& mesh) {
+void draw_slabs(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases,
+                const Options& options, std::vector<Slab>& slabs, Mesh<Coordinate>& mesh) {
     const std::size_t rows = signs.dims[1], planes = signs.dims[2];
     parallel_for(options.threads, slabs.size(), [&](std::size_t s) {
         Slab& slab = slabs[s];
@@ -90,8 +90,10 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
     mesh.triangles.resize(3 * total.triangles);
 
     std::vector<Slab> slabs = make_slabs(layers, std::max<std::size_t>(4096, (total.vertices + total.triangles) / 64));
-    if (options.trilinear) draw_slabs<true>(samples, signs, bases, options, slabs, mesh);
-    else draw_slabs<false>(samples, signs, bases, options, slabs, mesh);
+    if (options.trilinear)
+        draw_slabs<true>(samples, signs, bases, options, slabs, mesh);
+    else
+        draw_slabs<false>(samples, signs, bases, options, slabs, mesh);
     close_gaps(slabs, mesh.triangles);
     for (const Slab& slab : slabs) {
         mesh.ambiguous_faces += slab.ambiguous_faces;
@@ -101,7 +103,7 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
     return mesh;
 }
 
-#define ISOCORE_INSTANTIATE(Sample)                                            \
+#define ISOCORE_INSTANTIATE(Sample)                                              \
     template Mesh<float> march<Sample, float>(GridView<Sample>, const Options&); \
     template Mesh<double> march<Sample, double>(GridView<Sample>, const Options&);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)

@@ -16,8 +16,8 @@ namespace isocore::marching_cubes {
 
 struct Options {
     double isovalue = 0;
-    bool below = false;   // inside is sample <= isovalue, for volumes with a negative slope
-    bool capped = false;  // treat all beyond the border as outside
+    bool below = false;      // inside is sample <= isovalue, for volumes with a negative slope
+    bool capped = false;     // treat all beyond the border as outside
     bool trilinear = false;  // a cell's surface has the topology of the trilinear function: tubes, not only disks
     int threads = 1;
 };

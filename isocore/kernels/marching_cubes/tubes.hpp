@@ -6,9 +6,9 @@
 // two loops of that group into the ends of a tube. Its triangles form a strip, each with a side on one loop and its
 // tip on the other; a corner of the longer loop may be cut off first. 196 tubes, none with a vertex of its own.
 //
-// The rule of cell_loops.hpp for diagonals in a face has no strip for some of them. Here the cell above the face has the
-// diagonals between crossings on parallel edges along either axis, except, in faces of axis 0, along axis 2: those the
-// disks of cells below do draw. All others are the cell below's, as there. Together the rules never meet.
+// The rule of cell_loops.hpp for diagonals in a face has no strip for some of them. Here the cell above the face has
+// the diagonals between crossings on parallel edges along either axis, except, in faces of axis 0, along axis 2: those
+// the disks of cells below do draw. All others are the cell below's, as there. Together the rules never meet.
 #pragma once
 
 #include <array>
@@ -93,7 +93,8 @@ struct Strip {
     int cost = kForbidden, start = 0, length = 0;
     std::array<Step, 12> steps{}, tried{};
 
-    constexpr Strip(const std::array<int, 12>& shorter, int m_, const std::array<int, 12>& longer, int n_) : ahead(shorter), m(m_), n(n_) {
+    constexpr Strip(const std::array<int, 12>& shorter, int m_, const std::array<int, 12>& longer, int n_)
+        : ahead(shorter), m(m_), n(n_) {
         for (int j = 0; j < n; ++j) back[at(j)] = longer[at(n - 1 - j)];
         for (int first = 0; first < n; ++first) search(first, 0, 0, 0, 0);
         if (cost >= kForbidden) throw "two loops have no legal strip";
@@ -120,13 +121,15 @@ struct Strip {
         };
         if (i < m) go(Step::ahead, i + 1, j, bridge);
         if (j < n) go(Step::back, i, j + 1, bridge);
-        if (j + 1 < n) go(Step::back_past_corner, i, j + 2, bridge + diagonal_cost(back_at(first + j), back_at(first + j + 2)));
+        if (j + 1 < n)
+            go(Step::back_past_corner, i, j + 2, bridge + diagonal_cost(back_at(first + j), back_at(first + j + 2)));
     }
 
     // All steps along one loop in a row (as a ring): the strip would close on itself at one corner.
     constexpr bool goes_round_at_once(int taken) const {
         int changes = 0;
-        for (int s = 0; s < taken; ++s) changes += (tried[at(s)] == Step::ahead) != (tried[at((s + 1) % taken)] == Step::ahead);
+        for (int s = 0; s < taken; ++s)
+            changes += (tried[at(s)] == Step::ahead) != (tried[at((s + 1) % taken)] == Step::ahead);
         return changes <= 2;
     }
 };
@@ -164,7 +167,8 @@ constexpr Tube derive_tube(const cell_loops::derivation::Loops& loops, int a, in
     draw_strip(Strip(loops.edges[at(a)], loops.lengths[at(a)], loops.edges[at(b)], loops.lengths[at(b)]), tube.drawn);
     for (int n = 0; n < loops.count; ++n) {
         if (n == a || n == b) continue;
-        cell_loops::derivation::triangulate(loops.edges[at(n)], loops.lengths[at(n)], cell_loops::FaceDiagonals::shared_out, tube.drawn);
+        cell_loops::derivation::triangulate(loops.edges[at(n)], loops.lengths[at(n)],
+                                            cell_loops::FaceDiagonals::shared_out, tube.drawn);
     }
     return tube;
 }

@@ -42,23 +42,29 @@ nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& opti
         const nb::gil_scoped_release unlocked;
         mesh = climbing::climb<Sample, Coordinate>(grid_view(samples), options, ranges);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), facts_dict(mesh.facts));
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
+                          facts_dict(mesh.facts));
 }
 
 template <class Sample>
 void bind(nb::module_& module) {
     module.def(
         "climb",
-        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size, double max_error,
-           bool in_world, std::array<double, 3> spacing, bool measured, std::optional<Vector<Sample>> ranges) {
-            const climbing::Options options{isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured};
-            if (ranges && ranges->size() != range_count(grid_view(samples).dims)) throw nb::value_error("ranges of another volume");
+        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size,
+           double max_error, bool in_world, std::array<double, 3> spacing, bool measured,
+           std::optional<Vector<Sample>> ranges) {
+            const climbing::Options options{isovalue,  below,    capped,  threads, block_size,
+                                            max_error, in_world, spacing, measured};
+            if (ranges && ranges->size() != range_count(grid_view(samples).dims))
+                throw nb::value_error("ranges of another volume");
             const Sample* given = ranges ? ranges->data() : nullptr;
-            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options, given) : run<Sample, double>(samples, options, given);
+            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options, given)
+                                                      : run<Sample, double>(samples, options, given);
         },
-        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
-        nb::arg("block_size") = 16, nb::arg("max_error") = std::numeric_limits<double>::infinity(),
-        nb::arg("in_world") = false, nb::arg("spacing") = std::array<double, 3>{1, 1, 1}, nb::arg("measured") = true,
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false,
+        nb::arg("threads") = 1, nb::arg("block_size") = 16,
+        nb::arg("max_error") = std::numeric_limits<double>::infinity(), nb::arg("in_world") = false,
+        nb::arg("spacing") = std::array<double, 3>{1, 1, 1}, nb::arg("measured") = true,
         nb::arg("ranges").noconvert() = nb::none());
     module.def(
         "sample_ranges",

@@ -1,4 +1,5 @@
-// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads, single), for float32 and float64 values.
+// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads, single), for float32 and float64
+// values.
 #include "marching_cells/marching_cells.hpp"
 
 #include "python/arrays.hpp"
@@ -14,7 +15,8 @@ nb::object march_to(const mesh::Field<Value>& field, const marching_cells::Cells
         const nb::gil_scoped_release unlocked;
         mesh = marching_cells::march<Coordinate>(field, cells, isovalue, threads);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.intersected);
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
+                          mesh.intersected);
 }
 
 template <class Value>
@@ -22,13 +24,15 @@ nb::object march(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tet
                  const Vector<Value>& values, double isovalue, int threads, bool single) {
     const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
     const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
-    return single ? march_to<float>(field, cells, isovalue, threads) : march_to<double>(field, cells, isovalue, threads);
+    return single ? march_to<float>(field, cells, isovalue, threads)
+                  : march_to<double>(field, cells, isovalue, threads);
 }
 
 template <class Value>
 void bind(nb::module_& module) {
-    module.def("marching_cells", &march<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
-               nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1, nb::arg("single") = false);
+    module.def("marching_cells", &march<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(),
+               nb::arg("hexes").noconvert(), nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1,
+               nb::arg("single") = false);
 }
 
 }  // namespace

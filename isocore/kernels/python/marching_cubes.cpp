@@ -1,7 +1,6 @@
 // marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
 #include "marching_cubes/marching_cubes.hpp"
 
-
 #include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -16,8 +15,8 @@ nb::object run(const VolumeArray<Sample>& samples, const marching_cubes::Options
         const nb::gil_scoped_release unlocked;
         mesh = marching_cubes::march<Sample, Coordinate>(grid_view(samples), options);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.ambiguous_faces,
-                          mesh.ambiguous_cells, mesh.tubes);
+    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
+                          mesh.ambiguous_faces, mesh.ambiguous_cells, mesh.tubes);
 }
 
 template <class Sample>
@@ -26,10 +25,11 @@ void bind(nb::module_& module) {
         "marching_cubes",
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, bool trilinear) {
             const marching_cubes::Options options{isovalue, below, capped, trilinear, threads};
-            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options) : run<Sample, double>(samples, options);
+            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options)
+                                                      : run<Sample, double>(samples, options);
         },
-        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false, nb::arg("threads") = 1,
-        nb::arg("trilinear") = false);
+        nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false,
+        nb::arg("threads") = 1, nb::arg("trilinear") = false);
 }
 
 }  // namespace

@@ -10,14 +10,16 @@
 namespace isocore::python {
 namespace {
 
-nb::object extrema_graph(const Rows<std::int32_t, -1>& records, std::size_t corners, std::size_t faces, const Vector<std::uint8_t>& at_extremum) {
+nb::object extrema_graph(const Rows<std::int32_t, -1>& records, std::size_t corners, std::size_t faces,
+                         const Vector<std::uint8_t>& at_extremum) {
     if (corners + faces > records.shape(1) || at_extremum.shape(0) != records.shape(0)) {
         throw std::invalid_argument("records do not have that many columns, or there is not one flag per record");
     }
     Array<std::int32_t> kept;
     {
         const nb::gil_scoped_release unlocked;
-        kept = rivals::extrema_graph(records.data() + corners, records.shape(1), records.shape(0), faces, at_extremum.data());
+        kept = rivals::extrema_graph(records.data() + corners, records.shape(1), records.shape(0), faces,
+                                     at_extremum.data());
     }
     return to_numpy(std::move(kept));
 }

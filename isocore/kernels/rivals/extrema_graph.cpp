@@ -1,6 +1,6 @@
-// extrema_graph.cpp - Paths of cells between extrema, as the 1995 paper registers them. Its arcs are found by following the
-// field; here all extrema grow at once, breadth first, and where two of them meet that nothing has joined yet, the way back
-// to both is the arc. That takes linear time and gives as many arcs as a tree needs.
+// extrema_graph.cpp - Paths of cells between extrema, as the 1995 paper registers them. Its arcs are found by following
+// the field; here all extrema grow at once, breadth first, and where two of them meet that nothing has joined yet, the
+// way back to both is the arc. That takes linear time and gives as many arcs as a tree needs.
 #include "rivals/extrema_graph.hpp"
 
 #include <algorithm>
@@ -64,7 +64,8 @@ class Graph {
 
     int32_t find(int32_t source) {
         while (root_[static_cast<size_t>(source)] != source) {
-            source = root_[static_cast<size_t>(source)] = root_[static_cast<size_t>(root_[static_cast<size_t>(source)])];
+            source = root_[static_cast<size_t>(source)] =
+                root_[static_cast<size_t>(root_[static_cast<size_t>(source)])];
         }
         return source;
     }
@@ -77,7 +78,8 @@ class Graph {
 
 }  // namespace
 
-Array<int32_t> extrema_graph(const int32_t* twins, size_t stride, size_t cells, size_t faces, const std::uint8_t* at_extremum) {
+Array<int32_t> extrema_graph(const int32_t* twins, size_t stride, size_t cells, size_t faces,
+                             const std::uint8_t* at_extremum) {
     return Graph(twins, stride, cells, faces).run(at_extremum);
 }
 

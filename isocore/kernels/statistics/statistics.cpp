@@ -147,8 +147,8 @@ Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double 
     return counts;
 }
 
-#define ISOCORE_STATISTICS(Sample)                                \
-    template Extent extent(const Sample*, std::size_t, int);      \
+#define ISOCORE_STATISTICS(Sample)                           \
+    template Extent extent(const Sample*, std::size_t, int); \
     template Array<std::uint64_t> histogram(const Sample*, std::size_t, double, double, std::size_t, int);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_STATISTICS)
 #undef ISOCORE_STATISTICS

@@ -12,7 +12,7 @@
 namespace isocore {
 
 class Components {
-public:
+  public:
     using Pair = std::pair<std::int32_t, std::int32_t>;
 
     explicit Components(std::size_t count) : parent_(count) {}
@@ -34,7 +34,7 @@ public:
         return true;
     }
 
-private:
+  private:
     std::int32_t& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
 
     // Every step shortens the way for those who come later.

@@ -28,7 +28,8 @@ void Corners<Offset>::look_at(std::size_t begin, std::size_t end) {
             add_block<false>(corners, last);
         }
     }
-    std::stable_sort(spilled_.begin(), spilled_.end(), [](const Spilled& a, const Spilled& b) { return a.index < b.index; });
+    std::stable_sort(spilled_.begin(), spilled_.end(),
+                     [](const Spilled& a, const Spilled& b) { return a.index < b.index; });
 }
 
 template <class Offset>
@@ -82,7 +83,8 @@ void Corners<Offset>::copy_link(std::size_t vertex, Link& link) const {
 std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vertex_count, int threads) {
     std::size_t visits = 0;
     for (const VertexRange& block : blocks) {
-        visits += static_cast<std::size_t>(block.highest) / kSmallWindow - static_cast<std::size_t>(block.lowest) / kSmallWindow + 1;
+        visits += static_cast<std::size_t>(block.highest) / kSmallWindow -
+                  static_cast<std::size_t>(block.lowest) / kSmallWindow + 1;
     }
     if (visits <= 4 * blocks.size()) return kSmallWindow;
     return vertex_count / static_cast<std::size_t>(std::clamp(threads, 1, 64)) + 1;

@@ -42,7 +42,7 @@ using Link = std::vector<LinkEdge<std::int32_t>>;
 constexpr std::int32_t kShortRange = 32767;
 template <class Offset>
 class Corners {
-public:
+  public:
     Corners(const std::int32_t* triangles, std::size_t triangle_count, const std::vector<VertexRange>& blocks)
         : triangles_(triangles), triangle_count_(triangle_count), blocks_(blocks) {}
 
@@ -56,7 +56,7 @@ public:
     // All link edges of a vertex, however many.
     void copy_link(std::size_t vertex, Link& link) const;
 
-private:
+  private:
     struct Spilled {
         std::uint32_t index;
         LinkEdge<Offset> edge;

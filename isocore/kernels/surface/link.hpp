@@ -19,11 +19,11 @@ struct EdgeCounts {
 
 // Looks at one link after the other; what it keeps is only room to work in.
 class LinkInspector {
-public:
+  public:
     // Adds the edges around any vertex to `counts`; returns whether the link is one ring or one fan.
     bool inspect(const Link& link, EdgeCounts& counts);
 
-private:
+  private:
     struct Use {
         std::int32_t neighbour;
         bool is_from;  // the triangle runs from the vertex in the middle to this neighbour

@@ -10,9 +10,9 @@
 #include "common/parallel.hpp"
 #include "surface/components.hpp"
 #include "surface/corners.hpp"
-#include "surface/size.hpp"
 #include "surface/link.hpp"
 #include "surface/ring.hpp"
+#include "surface/size.hpp"
 
 namespace isocore {
 namespace {
@@ -142,8 +142,9 @@ Measured measure(const MeshView<Real>& mesh, int threads) {
     measured.volume = size.sixfold_volume / 6;
     measured.degenerate = size.degenerate;
 
-    const Topology topology = has_short_ranges(size.ranges) ? inspect_vertices<std::int16_t>(mesh, size.ranges, threads)
-                                                            : inspect_vertices<std::int32_t>(mesh, size.ranges, threads);
+    const Topology topology = has_short_ranges(size.ranges)
+                                  ? inspect_vertices<std::int16_t>(mesh, size.ranges, threads)
+                                  : inspect_vertices<std::int32_t>(mesh, size.ranges, threads);
     measured.components = topology.used_vertices - topology.joins;
     measured.edges = topology.ends.edges / 2;  // here and below: both ends have counted it
     measured.boundary_edges = topology.ends.boundary / 2;

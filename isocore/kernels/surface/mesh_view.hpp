@@ -10,7 +10,7 @@ namespace isocore {
 
 template <class Real>
 struct MeshView {
-    const Real* vertices;           // (vertex_count, 3)
+    const Real* vertices;  // (vertex_count, 3)
     std::size_t vertex_count;
     const std::int32_t* triangles;  // (triangle_count, 3)
     std::size_t triangle_count;

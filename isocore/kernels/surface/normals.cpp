@@ -147,8 +147,8 @@ Array<float> triangle_normals(const MeshView<Real>& mesh) {
     return normals;
 }
 
-#define ISOCORE_INSTANTIATE(Sample)                                                                               \
-    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<float>&, bool, int);            \
+#define ISOCORE_INSTANTIATE(Sample)                                                                    \
+    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<float>&, bool, int); \
     template Array<float> gradient_normals(GridView<const Sample>, const MeshView<double>&, bool, int);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE

@@ -16,9 +16,8 @@ constexpr std::size_t kBlock = 16384;
 
 template <class Body>
 void for_each_block(std::size_t count, int threads, const Body& body) {
-    parallel_for(threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
-        body(block * kBlock, std::min(count, (block + 1) * kBlock));
-    });
+    parallel_for(threads, (count + kBlock - 1) / kBlock,
+                 [&](std::size_t block) { body(block * kBlock, std::min(count, (block + 1) * kBlock)); });
 }
 
 // The cofactors of the linear part: the inverse transpose times the determinant, exact where the entries are.
@@ -58,11 +57,13 @@ void turn_normals(float* normals, std::size_t count, const Affine& affine, int t
     for_each_block(count, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
             float* normal = normals + 3 * v;
-            const Vec3 old{static_cast<double>(normal[0]), static_cast<double>(normal[1]), static_cast<double>(normal[2])};
+            const Vec3 old{static_cast<double>(normal[0]), static_cast<double>(normal[1]),
+                           static_cast<double>(normal[2])};
             const Vec3 turned{dot(rows[0], old), dot(rows[1], old), dot(rows[2], old)};
             const double length = std::sqrt(dot(turned, turned));
             if (!(length > 0)) continue;
-            for (std::size_t axis = 0; axis < 3; ++axis) normal[axis] = static_cast<float>(sign * turned[axis] / length);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                normal[axis] = static_cast<float>(sign * turned[axis] / length);
         }
     });
 }

@@ -44,7 +44,8 @@ struct LinkRegisters {
     explicit LinkRegisters(const Slots<std::int16_t>& link) {
         const auto* pairs = reinterpret_cast<const __m128i*>(link.edges.data());
         const __m128i low = _mm_load_si128(pairs), high = _mm_load_si128(pairs + 1);
-        from = _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(low, 16), 16), _mm_srai_epi32(_mm_slli_epi32(high, 16), 16));
+        from =
+            _mm_packs_epi32(_mm_srai_epi32(_mm_slli_epi32(low, 16), 16), _mm_srai_epi32(_mm_slli_epi32(high, 16), 16));
         to = _mm_packs_epi32(_mm_srai_epi32(low, 16), _mm_srai_epi32(high, 16));
     }
 };
@@ -136,17 +137,17 @@ inline bool is_plain_ring(const Slots<std::int16_t>& link, std::size_t count) {
     const __m128i lanes = _mm_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7);
     const __m128i used = _mm_cmpgt_epi16(_mm_set1_epi16(static_cast<std::int16_t>(count)), lanes);
     // Slots 0..7 and, above them, 4..7, 0..3: turned by none to three they pair every slot with every other.
-    const __m256i from = _mm256_permute4x64_epi64(_mm256_castsi128_si256(_mm_and_si128(edges.from, used)), 0b00'01'01'00);
+    const __m256i from =
+        _mm256_permute4x64_epi64(_mm256_castsi128_si256(_mm_and_si128(edges.from, used)), 0b00'01'01'00);
     const __m256i to = _mm256_broadcastsi128_si256(edges.to);
     const __m256i found0 = _mm256_cmpeq_epi16(to, from);
     const __m256i found1 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 2));
     const __m256i found2 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 4));
     const __m256i found3 = _mm256_cmpeq_epi16(to, _mm256_alignr_epi8(from, from, 6));
     const __m256i any = _mm256_or_si256(_mm256_or_si256(found0, found1), _mm256_or_si256(found2, found3));
-    const __m256i numbers = _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(found0, numbers_after<0>()),
-                                                            _mm256_and_si256(found1, numbers_after<1>())),
-                                            _mm256_or_si256(_mm256_and_si256(found2, numbers_after<2>()),
-                                                            _mm256_and_si256(found3, numbers_after<3>())));
+    const __m256i numbers = _mm256_or_si256(
+        _mm256_or_si256(_mm256_and_si256(found0, numbers_after<0>()), _mm256_and_si256(found1, numbers_after<1>())),
+        _mm256_or_si256(_mm256_and_si256(found2, numbers_after<2>()), _mm256_and_si256(found3, numbers_after<3>())));
     const __m128i found = _mm_or_si128(_mm256_castsi256_si128(any), _mm256_extracti128_si256(any, 1));
     const __m128i none = _mm_andnot_si128(found, _mm_set1_epi8(-1));
     __m128i next = _mm_or_si128(_mm256_castsi256_si128(numbers), _mm256_extracti128_si256(numbers, 1));

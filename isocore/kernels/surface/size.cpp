@@ -17,7 +17,7 @@ static_assert(kTrianglesPerBlock % kBatch == 0);
 // Sums of as many triangles at a time as a batch has, each lane on its own.
 template <class Real>
 class Batch {
-public:
+  public:
     void add(const MeshView<Real>& mesh, std::size_t begin, std::size_t end, const Vec3& centre) {
         load(mesh, begin, end);
         const double cx = centre[0], cy = centre[1], cz = centre[2];
@@ -39,7 +39,7 @@ public:
         size.degenerate += static_cast<std::size_t>(sum(degenerate_)) - padding_;
     }
 
-private:
+  private:
     // What is left of a batch is filled with triangles of no size.
     void load(const MeshView<Real>& mesh, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -49,7 +49,8 @@ private:
             }
         }
         padding_ += kBatch - (end - begin);
-        for (auto& row : coordinates_) std::fill(row.begin() + static_cast<std::ptrdiff_t>(end - begin), row.end(), Real{0});
+        for (auto& row : coordinates_)
+            std::fill(row.begin() + static_cast<std::ptrdiff_t>(end - begin), row.end(), Real{0});
     }
 
     // By halves: quick, and rounded less often than one after the other.
@@ -114,7 +115,7 @@ struct Box {
         return found;
     }
 
-private:
+  private:
     void add(std::size_t lane, Real x) {
         low[lane] = x < low[lane] ? x : low[lane];
         high[lane] = x > high[lane] ? x : high[lane];

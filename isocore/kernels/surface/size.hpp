@@ -16,7 +16,7 @@ template <class Real>
 std::array<double, 6> bounds(const Real* vertices, std::size_t count);
 
 struct Size {
-    std::array<double, 6> bounds{};   // of all vertices, used or not
+    std::array<double, 6> bounds{};  // of all vertices, used or not
     double doubled_area = 0;
     double sixfold_volume = 0;
     std::size_t degenerate = 0;       // with a repeated corner, or of area zero

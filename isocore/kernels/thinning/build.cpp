@@ -41,12 +41,15 @@ class EdgeNumbers {
         for (const auto& [low, high] : ends_) ++start_[static_cast<size_t>(low) + 1];
         for (size_t n = 1; n < start_.size(); ++n) start_[n] += start_[n - 1];
         Array<std::pair<int32_t, int32_t>> leaving(ends_.size());  // high point, edge
-        for (size_t n = 0; n < ends_.size(); ++n) leaving[start_[static_cast<size_t>(ends_[n].first)]++] = {ends_[n].second, static_cast<int32_t>(n)};
+        for (size_t n = 0; n < ends_.size(); ++n)
+            leaving[start_[static_cast<size_t>(ends_[n].first)]++] = {ends_[n].second, static_cast<int32_t>(n)};
         number_.resize(ends_.size());
         std::iota(number_.begin(), number_.end(), 0);
         bool equal = false;
-        for (size_t point = 0, begin = 0; point + 1 < start_.size(); begin = start_[point++]) {  // scattering moved every start to the end
-            const auto from = leaving.begin() + static_cast<std::ptrdiff_t>(begin), to = leaving.begin() + static_cast<std::ptrdiff_t>(start_[point]);
+        for (size_t point = 0, begin = 0; point + 1 < start_.size();
+             begin = start_[point++]) {  // scattering moved every start to the end
+            const auto from = leaving.begin() + static_cast<std::ptrdiff_t>(begin),
+                       to = leaving.begin() + static_cast<std::ptrdiff_t>(start_[point]);
             std::sort(from, to);
             for (auto it = from; it != to; ++it) {
                 if (it == from || it->first != (it - 1)->first) continue;
@@ -93,7 +96,8 @@ Gluing<Cell> glue_in_order(const Field<Value>& field, const int32_t* cells, size
 }
 
 template <class Cell>
-Part make_part(const Gluing<Cell>& gluing, const std::vector<double>& heights, const EdgeNumbers& numbers, size_t which, std::vector<bool>& edge_seen) {
+Part make_part(const Gluing<Cell>& gluing, const std::vector<double>& heights, const EdgeNumbers& numbers, size_t which,
+               std::vector<bool>& edge_seen) {
     Part part;
     part.records.resize(kRecord<Cell> * gluing.cells);
     int32_t* out = part.records.data();

@@ -18,9 +18,9 @@ using std::size_t;
 
 // A face by its points: the lowest is the bucket it is sorted into, the others tell it from the rest of the bucket.
 struct Face {
-    std::uint64_t next;      // triangle: the middle and the highest point; quadrilateral: the opposite and one neighbour
-    std::uint32_t last;      // the other neighbour, or 0 of a triangle
-    int32_t place;           // kFaces * cell + face
+    std::uint64_t next;  // triangle: the middle and the highest point; quadrilateral: the opposite and one neighbour
+    std::uint32_t last;  // the other neighbour, or 0 of a triangle
+    int32_t place;       // kFaces * cell + face
     bool same_points(const Face& other) const { return next == other.next && last == other.last; }
     bool operator<(const Face& other) const {
         if (next != other.next) return next < other.next;
@@ -56,7 +56,8 @@ std::array<int32_t, 4> named_points(mesh::Hex, const int32_t* ids, size_t face) 
 template <class Cell>
 int32_t lowest_point(const int32_t* ids, size_t face) {
     int32_t low = std::numeric_limits<int32_t>::max();
-    for (mesh::Mask left = Cell::kShape.face_corners[face]; left != 0; left &= left - 1) low = std::min(low, ids[std::countr_zero(left)]);
+    for (mesh::Mask left = Cell::kShape.face_corners[face]; left != 0; left &= left - 1)
+        low = std::min(low, ids[std::countr_zero(left)]);
     return low;
 }
 
@@ -84,7 +85,8 @@ void pair_faces(Gluing<Cell>& gluing, size_t points) {
             if (gluing.oddities.collapsed_cells++ == 0) gluing.oddities.collapsed_cell = static_cast<int32_t>(cell);
             continue;
         }
-        for (size_t face = 0; face < Cell::kFaces; ++face) ++start[static_cast<size_t>(lowest_point<Cell>(ids, face)) + 1];
+        for (size_t face = 0; face < Cell::kFaces; ++face)
+            ++start[static_cast<size_t>(lowest_point<Cell>(ids, face)) + 1];
     }
     for (size_t point = 0; point < points; ++point) start[point + 1] += start[point];
     Array<Face> faces(start[points]);
@@ -93,8 +95,10 @@ void pair_faces(Gluing<Cell>& gluing, size_t points) {
         for (size_t face = 0; face < Cell::kFaces; ++face) {
             const auto ids = named_points(Cell{}, gluing.corners.data() + Cell::kCorners * cell, face);
             const std::uint64_t next = static_cast<std::uint64_t>(ids[1]) << 32 | static_cast<std::uint32_t>(ids[2]);
-            const std::uint32_t last = Cell::kFaceCorners == 4 ? static_cast<std::uint32_t>(ids[Cell::kFaceCorners - 1]) : 0;
-            faces[start[static_cast<size_t>(ids[0])]++] = {next, last, static_cast<int32_t>(Cell::kFaces * cell + face)};
+            const std::uint32_t last =
+                Cell::kFaceCorners == 4 ? static_cast<std::uint32_t>(ids[Cell::kFaceCorners - 1]) : 0;
+            faces[start[static_cast<size_t>(ids[0])]++] = {next, last,
+                                                           static_cast<int32_t>(Cell::kFaces * cell + face)};
         }
     }
     int32_t first_crowded = std::numeric_limits<int32_t>::max();
@@ -113,7 +117,8 @@ void pair_faces(Gluing<Cell>& gluing, size_t points) {
                 ++gluing.oddities.crowded_faces;
                 if (a >= first_crowded) continue;
                 first_crowded = a;
-                for (size_t n = 0; n < 3; ++n) gluing.oddities.crowded_cells[n] = faces[begin + n].place / static_cast<int32_t>(Cell::kFaces);
+                for (size_t n = 0; n < 3; ++n)
+                    gluing.oddities.crowded_cells[n] = faces[begin + n].place / static_cast<int32_t>(Cell::kFaces);
             }
         }
     }
@@ -159,7 +164,8 @@ void name_vertex_copies(Gluing<Cell>& gluing, size_t points) {
             }
         }
     }
-    if (next > static_cast<size_t>(std::numeric_limits<int32_t>::max())) throw std::length_error("the mesh has too many vertices");
+    if (next > static_cast<size_t>(std::numeric_limits<int32_t>::max()))
+        throw std::length_error("the mesh has too many vertices");
     gluing.copy_count = next;
 }
 
@@ -189,7 +195,8 @@ class Shells {
     explicit Shells(size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0); }
     int32_t find(int32_t face) {
         while (parent_[static_cast<size_t>(face)] != face) {
-            face = parent_[static_cast<size_t>(face)] = parent_[static_cast<size_t>(parent_[static_cast<size_t>(face)])];
+            face = parent_[static_cast<size_t>(face)] =
+                parent_[static_cast<size_t>(parent_[static_cast<size_t>(face)])];
         }
         return face;
     }

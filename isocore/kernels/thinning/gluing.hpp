@@ -26,7 +26,7 @@ struct Gluing {
     Array<std::int32_t> copies;   // per corner: its vertex copy
     Array<std::int32_t> edges;    // per edge of a cell: its edge copy
     std::size_t copy_count = 0, edge_count = 0, boundary_faces = 0;
-    Array<std::int32_t> shell;    // per boundary face: a number its connected piece of boundary has in common
+    Array<std::int32_t> shell;  // per boundary face: a number its connected piece of boundary has in common
     std::size_t shells = 0;
     Oddities oddities;
 

@@ -1,9 +1,9 @@
-// grid_propagate.cpp - Isosurface propagation through the cells of a volume (propagate.cpp says how), drawn with the cases and
-// decisions of marching cubes, so that the triangles are the same.
+// grid_propagate.cpp - Isosurface propagation through the cells of a volume (propagate.cpp says how), drawn with the
+// cases and decisions of marching cubes, so that the triangles are the same.
 //
-// Every crossed edge has one owner: the cell whose lowest corner it starts at, or the nearest one where the volume ends. All
-// cells around a crossed edge are visited, the owner with them, so a vertex's number is its owner's first number plus the
-// owned crossings before it, without a hash.
+// Every crossed edge has one owner: the cell whose lowest corner it starts at, or the nearest one where the volume
+// ends. All cells around a crossed edge are visited, the owner with them, so a vertex's number is its owner's first
+// number plus the owned crossings before it, without a hash.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -101,9 +101,16 @@ template <class Sample>
 class GridDrawing {
   public:
     GridDrawing(const PaddedGrid<Sample>& grid, const GridWalk<Sample>& walk, const int32_t* place, double isovalue)
-        : grid_(grid), walk_(walk), place_(place), isovalue_(isovalue), first_vertex_(walk.cells.size() + 1),
+        : grid_(grid),
+          walk_(walk),
+          place_(place),
+          isovalue_(isovalue),
+          first_vertex_(walk.cells.size() + 1),
           chunks_((walk.cells.size() + kChunk - 1) / kChunk) {
-        for (size_t axis = 0; axis < 3; ++axis) step_[axis] = static_cast<int32_t>(axis == 0 ? 1 : axis == 1 ? grid.cells[0] : grid.cells[0] * grid.cells[1]);
+        for (size_t axis = 0; axis < 3; ++axis)
+            step_[axis] = static_cast<int32_t>(axis == 0   ? 1
+                                               : axis == 1 ? grid.cells[0]
+                                                           : grid.cells[0] * grid.cells[1]);
     }
 
     // Numbers the vertices and places the chunks; then draws.
@@ -118,7 +125,8 @@ class GridDrawing {
             mesh.ambiguous_faces += chunk.ambiguous_faces;
         }
         if (vertices > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
-            throw std::length_error("the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
+            throw std::length_error(
+                "the surface has more vertices than 2^31 - 1; crop the volume or choose another isovalue");
         }
         mesh.vertices.resize(3 * vertices);
         mesh.triangles.resize(corners);
@@ -140,7 +148,9 @@ class GridDrawing {
         for (size_t axis = 0; axis < 3; ++axis) axes |= Mask{cell[axis] + 1 == grid_.cells[axis]} << axis;
         return axes;
     }
-    Mask owned_crossings(const Dims& cell, Mask signs) const { return mesh::kCrossedEdges<Hex>[signs] & kOwned[last(cell)]; }
+    Mask owned_crossings(const Dims& cell, Mask signs) const {
+        return mesh::kCrossedEdges<Hex>[signs] & kOwned[last(cell)];
+    }
 
     const cell_loops::Case& drawn(const Dims& cell, Mask signs) const {
         const cell_loops::Corners& entry = cell_loops::kTable.corners[signs];
@@ -178,8 +188,9 @@ class GridDrawing {
         Dims to = from;
         ++to[axis];
         const double t = grid_.pad && grid_.is_padding(from) ? 1 - kClamp
-                         : grid_.pad && grid_.is_padding(to) ? kClamp
-                                                             : crossing(grid_.sample(from), grid_.sample(to), isovalue_);
+                         : grid_.pad && grid_.is_padding(to)
+                             ? kClamp
+                             : crossing(grid_.sample(from), grid_.sample(to), isovalue_);
         for (size_t n = 0; n < 3; ++n) out[n] = static_cast<double>(from[n]) - static_cast<double>(grid_.pad);
         out[axis] += t;
     }
@@ -197,7 +208,8 @@ class GridDrawing {
             owner += step_[axis];
         }
         const auto corner = static_cast<int>(Hex::kShape.ends[edge][0] & ~up), axis = static_cast<int>(edge / 4);
-        return numbered(static_cast<size_t>(place_[owner]) - 1, there, static_cast<size_t>(cube::edge_between(corner, corner | 1 << axis)));
+        return numbered(static_cast<size_t>(place_[owner]) - 1, there,
+                        static_cast<size_t>(cube::edge_between(corner, corner | 1 << axis)));
     }
 
     int32_t numbered(size_t n, const Dims& cell, size_t edge) const {
@@ -232,7 +244,8 @@ class GridDrawing {
 }  // namespace
 
 template <class Sample>
-GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skeleton, double isovalue, const GridOptions& options, int threads) {
+GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skeleton, double isovalue,
+                        const GridOptions& options, int threads) {
     const PaddedGrid<Sample> grid(samples, options);
     GridWalk<Sample> walk(grid, skeleton, isovalue);
     walk.run(isovalue);
@@ -243,8 +256,9 @@ GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skelet
     return mesh;
 }
 
-#define ISOCORE_INSTANTIATE(Sample) \
-    template GridMesh propagate_grid<Sample>(GridView<Sample>, const GridSkeletonView&, double, const GridOptions&, int);
+#define ISOCORE_INSTANTIATE(Sample)                                                                                 \
+    template GridMesh propagate_grid<Sample>(GridView<Sample>, const GridSkeletonView&, double, const GridOptions&, \
+                                             int);
 ISOCORE_INSTANTIATE(std::uint8_t)
 ISOCORE_INSTANTIATE(std::int8_t)
 ISOCORE_INSTANTIATE(std::uint16_t)

@@ -1,5 +1,5 @@
-// grid_thinner.cpp - The safe rule (safe_rule.hpp) where a cell's 26 neighbours are found by index arithmetic. A volume is one
-// box, so there is no void to open and no copy of a vertex to tell apart.
+// grid_thinner.cpp - The safe rule (safe_rule.hpp) where a cell's 26 neighbours are found by index arithmetic. A volume
+// is one box, so there is no void to open and no copy of a vertex to tell apart.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -34,8 +34,12 @@ constexpr Around kAround = [] {
         if (n == kItself) continue;
         Mask touched = 0;
         for (unsigned corner = 0; corner < 8; ++corner) {
-            const auto along = [&](unsigned axis) { return static_cast<int>(axis == 0 ? n % 3 : axis == 1 ? n / 3 % 3 : n / 9) - 1; };
-            const auto meets = [&](unsigned axis) { return along(axis) == 0 || (along(axis) > 0) == ((corner >> axis & 1) != 0); };
+            const auto along = [&](unsigned axis) {
+                return static_cast<int>(axis == 0 ? n % 3 : axis == 1 ? n / 3 % 3 : n / 9) - 1;
+            };
+            const auto meets = [&](unsigned axis) {
+                return along(axis) == 0 || (along(axis) > 0) == ((corner >> axis & 1) != 0);
+            };
             if (meets(0) && meets(1) && meets(2)) touched |= Mask{1} << corner;
         }
         for (unsigned corner = 0; corner < 8; ++corner) around.corners[corner] |= (touched >> corner & 1) << n;
@@ -44,7 +48,8 @@ constexpr Around kAround = [] {
             if (touched >> ends[0] & touched >> ends[1] & 1) around.edges[edge] |= 1u << n;
         }
         for (unsigned face = 0; face < 6; ++face) {
-            if ((touched & Hex::kShape.face_corners[face]) == Hex::kShape.face_corners[face]) around.faces[face] |= 1u << n;
+            if ((touched & Hex::kShape.face_corners[face]) == Hex::kShape.face_corners[face])
+                around.faces[face] |= 1u << n;
         }
     }
     return around;
@@ -57,7 +62,8 @@ class GridThinner {
         for (size_t axis = 0; axis < 3; ++axis) framed_[axis] = grid.cells[axis] + 2;
         for (unsigned n = 0; n < kNeighbours; ++n) {
             const auto offset = [](unsigned digit) { return static_cast<std::ptrdiff_t>(digit) - 1; };
-            const auto row = static_cast<std::ptrdiff_t>(framed_[0]), plane = row * static_cast<std::ptrdiff_t>(framed_[1]);
+            const auto row = static_cast<std::ptrdiff_t>(framed_[0]),
+                       plane = row * static_cast<std::ptrdiff_t>(framed_[1]);
             offset_[n] = offset(n % 3) + row * offset(n / 3 % 3) + plane * offset(n / 9);
         }
         state_.assign(framed_[0] * framed_[1] * framed_[2], kGone);
@@ -73,7 +79,8 @@ class GridThinner {
         for (size_t k = 0; k < grid_.cells[2]; ++k) {
             for (size_t j = 0; j < grid_.cells[1]; ++j) {
                 const bool rim = j == 0 || k == 0 || j + 1 == grid_.cells[1] || k + 1 == grid_.cells[2];
-                for (size_t i = 0; i < grid_.cells[0]; i += rim || grid_.cells[0] == 1 ? 1 : grid_.cells[0] - 1) queue(framed({i, j, k}));
+                for (size_t i = 0; i < grid_.cells[0]; i += rim || grid_.cells[0] == 1 ? 1 : grid_.cells[0] - 1)
+                    queue(framed({i, j, k}));
             }
         }
         std::vector<size_t> now;
@@ -88,7 +95,9 @@ class GridThinner {
   private:
     enum : std::uint8_t { kGone = 0, kThere = 1, kWaiting = 2 };
 
-    size_t framed(const Dims& cell) const { return cell[0] + 1 + framed_[0] * (cell[1] + 1 + framed_[1] * (cell[2] + 1)); }
+    size_t framed(const Dims& cell) const {
+        return cell[0] + 1 + framed_[0] * (cell[1] + 1 + framed_[1] * (cell[2] + 1));
+    }
     Dims cell_at(size_t place) const {
         return {place % framed_[0] - 1, place / framed_[0] % framed_[1] - 1, place / framed_[0] / framed_[1] - 1};
     }
@@ -127,10 +136,13 @@ class GridThinner {
 
     std::uint32_t neighbours(size_t cell) const {
         std::uint32_t there = 0;
-        for (unsigned n = 0; n < kNeighbours; ++n) there |= static_cast<std::uint32_t>(state_[neighbour(cell, n)] & kThere) << n;
+        for (unsigned n = 0; n < kNeighbours; ++n)
+            there |= static_cast<std::uint32_t>(state_[neighbour(cell, n)] & kThere) << n;
         return there;
     }
-    size_t neighbour(size_t cell, unsigned n) const { return static_cast<size_t>(static_cast<std::ptrdiff_t>(cell) + offset_[n]); }
+    size_t neighbour(size_t cell, unsigned n) const {
+        return static_cast<size_t>(static_cast<std::ptrdiff_t>(cell) + offset_[n]);
+    }
 
     static Used used(std::uint32_t there) {
         Used out;
@@ -144,7 +156,8 @@ class GridThinner {
         const size_t low = grid_.id(cell_at(cell));
         for (; free != 0; free &= free - 1) {
             const auto corner = static_cast<size_t>(std::countr_zero(free));
-            if (extremum_[low + (corner & 1) + (corner >> 1 & 1) * grid_.step(1) + (corner >> 2) * grid_.step(2)]) return true;
+            if (extremum_[low + (corner & 1) + (corner >> 1 & 1) * grid_.step(1) + (corner >> 2) * grid_.step(2)])
+                return true;
         }
         return false;
     }
@@ -157,9 +170,12 @@ class GridThinner {
         state_[cell] = kGone;
         std::uint32_t changed = 0;  // face neighbours, and the last cells at an edge or a corner
         for (const std::uint32_t cells : kAround.faces) changed |= there & cells;
-        for (const std::uint32_t cells : kAround.edges) changed |= std::has_single_bit(there & cells) ? there & cells : 0;
-        for (const std::uint32_t cells : kAround.corners) changed |= std::has_single_bit(there & cells) ? there & cells : 0;
-        for (; changed != 0; changed &= changed - 1) queue(neighbour(cell, static_cast<unsigned>(std::countr_zero(changed))));
+        for (const std::uint32_t cells : kAround.edges)
+            changed |= std::has_single_bit(there & cells) ? there & cells : 0;
+        for (const std::uint32_t cells : kAround.corners)
+            changed |= std::has_single_bit(there & cells) ? there & cells : 0;
+        for (; changed != 0; changed &= changed - 1)
+            queue(neighbour(cell, static_cast<unsigned>(std::countr_zero(changed))));
     }
 
     GridSkeleton collect() const {
@@ -178,7 +194,8 @@ class GridThinner {
                     ++skeleton.classes[static_cast<size_t>(std::popcount(used(neighbours(cell)).faces))];
                     double low = grid_.height({i, j, k}), high = low;
                     for (size_t corner = 1; corner < 8; ++corner) {
-                        const double height = grid_.height({i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)});
+                        const double height =
+                            grid_.height({i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2)});
                         low = std::min(low, height);
                         high = std::max(high, height);
                     }
@@ -186,7 +203,8 @@ class GridThinner {
                 }
             }
         }
-        std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.low != b.low ? a.low < b.low : a.cell < b.cell; });
+        std::sort(found.begin(), found.end(),
+                  [](const Found& a, const Found& b) { return a.low != b.low ? a.low < b.low : a.cell < b.cell; });
         for (const auto& [low, high, cell] : found) {
             skeleton.cells.push_back(cell);
             skeleton.low.push_back(low);

@@ -1,5 +1,5 @@
-// grid_thinning.hpp - Volume thinning of voxel volumes: their cells are hexahedra that need no adjacency arrays, since index
-// arithmetic finds every neighbour. With `capped` the volume has one more layer of outside samples on every side.
+// grid_thinning.hpp - Volume thinning of voxel volumes: their cells are hexahedra that need no adjacency arrays, since
+// index arithmetic finds every neighbour. With `capped` the volume has one more layer of outside samples on every side.
 // A cell is named by its place i + cells_i * (j + cells_j * k), padding included.
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace isocore::thinning {
 
 struct GridOptions {
-    bool below = false;   // inside is sample <= isovalue, for volumes with a negative slope
+    bool below = false;  // inside is sample <= isovalue, for volumes with a negative slope
     bool capped = false;
 };
 
@@ -38,13 +38,14 @@ struct GridSkeletonView {
 };
 
 struct GridMesh {
-    Array<double> vertices;         // x, y, z, in index space
+    Array<double> vertices;  // x, y, z, in index space
     Array<std::int32_t> triangles;
     std::size_t seeds = 0, visited = 0, ambiguous_faces = 0, ambiguous_cells = 0;
 };
 
 // The vertices and triangles of marching cubes, in another order.
 template <class Sample>
-GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skeleton, double isovalue, const GridOptions& options, int threads);
+GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skeleton, double isovalue,
+                        const GridOptions& options, int threads);
 
 }  // namespace isocore::thinning

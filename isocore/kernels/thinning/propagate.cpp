@@ -1,6 +1,7 @@
-// propagate.cpp - Isosurface propagation: from the skeleton cells that hold the isovalue, breadth first through the faces that
-// the isosurface crosses. On signs only, never on geometry: a face is crossed iff its corners differ in sign, and then
-// both of its cells are. What was visited is drawn block by block, in the order of the cells' numbers, whoever walked.
+// propagate.cpp - Isosurface propagation: from the skeleton cells that hold the isovalue, breadth first through the
+// faces that the isosurface crosses. On signs only, never on geometry: a face is crossed iff its corners differ in
+// sign, and then both of its cells are. What was visited is drawn block by block, in the order of the cells' numbers,
+// whoever walked.
 //
 // Numbering vertices needs no hash: every edge has one owner among its cells, and all cells around a crossed edge are
 // visited, the owner with them. So the owners number and place the vertices first, and then the triangles find them.
@@ -29,7 +30,8 @@ template <class Cell, class Value>
 class Drawing {
   public:
     // Lays the blocks of a walk one behind the other, behind what is drawn before them.
-    Drawing(const Walk<Cell, Value>& walk, const Field<Value>& field, const IndexView& index, double isovalue, Amount& before)
+    Drawing(const Walk<Cell, Value>& walk, const Field<Value>& field, const IndexView& index, double isovalue,
+            Amount& before)
         : walk_(walk), field_(field), index_(index), isovalue_(isovalue) {
         size_t cells = 0;
         for (size_t block = 0; block < walk.blocks().size(); ++block) {
@@ -76,7 +78,8 @@ class Drawing {
         });
     }
 
-    // first_middle: the number of the first vertex in the middle of a loop. Returns whether a triangle has two equal corners.
+    // first_middle: the number of the first vertex in the middle of a loop. Returns whether a triangle has two equal
+    // corners.
     template <class Coordinate>
     bool draw(size_t task, size_t first_middle, Mesh<Coordinate>& mesh) const {
         int32_t* out = mesh.triangles.data() + 3 * tasks_[task].before.triangles;
@@ -91,12 +94,15 @@ class Drawing {
             const auto& drawn = walk_.drawn(corners, signs_[n]);
             for (size_t corner = 0; corner < 3u * drawn.triangles; ++corner) {
                 const size_t edge = drawn.edges[corner];
-                out[corner] = edge < mesh::kMiddle ? vertex_on(corners, edge) : static_cast<int32_t>(middle + edge - mesh::kMiddle);
+                out[corner] = edge < mesh::kMiddle ? vertex_on(corners, edge)
+                                                   : static_cast<int32_t>(middle + edge - mesh::kMiddle);
             }
             for (size_t triangle = 0; triangle < drawn.triangles; ++triangle, out += 3) {
                 collapsed |= out[0] == out[1] || out[1] == out[2] || out[2] == out[0];
             }
-            const auto position = [&](size_t edge) { return mesh.vertices.data() + 3 * static_cast<size_t>(vertex_on(corners, edge)); };
+            const auto position = [&](size_t edge) {
+                return mesh.vertices.data() + 3 * static_cast<size_t>(vertex_on(corners, edge));
+            };
             mesh::write_middles(drawn, position, mesh.vertices.data() + 3 * middle);
             middle += drawn.middles;
         });
@@ -109,7 +115,8 @@ class Drawing {
         Amount before;
     };
 
-    // Calls visit(place, record) for the visited cells of a block, in order, and expect(place, record) some cells ahead.
+    // Calls visit(place, record) for the visited cells of a block, in order, and expect(place, record) some cells
+    // ahead.
     template <class Expect, class Visit>
     void for_each(size_t task, const Expect& expect, const Visit& visit) const {
         constexpr size_t kRecordsAhead = 12, kValuesAhead = 6;
@@ -172,7 +179,9 @@ Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, do
     });
     std::atomic<bool> collapsed{false};
     parallel_for(threads, tasks + drawn_hexes.tasks(), [&](size_t task) {
-        if (task < tasks ? drawn_tets.draw(task, all.vertices, mesh) : drawn_hexes.draw(task - tasks, all.vertices, mesh)) collapsed = true;
+        if (task < tasks ? drawn_tets.draw(task, all.vertices, mesh)
+                         : drawn_hexes.draw(task - tasks, all.vertices, mesh))
+            collapsed = true;
     });
     if (collapsed) drop_collapsed(mesh.triangles);
     mesh.seeds = tets.seeds() + hexes.seeds();

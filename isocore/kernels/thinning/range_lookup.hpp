@@ -15,7 +15,8 @@ class RangeLookup {
         for (std::size_t count = size; count > kFan; count = highest_.back().size()) {
             const double* below = highest_.empty() ? high : highest_.back().data();
             std::vector<double> level((count + kFan - 1) / kFan);
-            for (std::size_t n = 0; n < level.size(); ++n) level[n] = *std::max_element(below + kFan * n, below + std::min(count, kFan * (n + 1)));
+            for (std::size_t n = 0; n < level.size(); ++n)
+                level[n] = *std::max_element(below + kFan * n, below + std::min(count, kFan * (n + 1)));
             highest_.push_back(std::move(level));
         }
     }
@@ -37,8 +38,10 @@ class RangeLookup {
         for (std::size_t n = first; n < first + kFan && n * width < end; ++n) {
             const double highest = level == 0 ? high_[n] : highest_[level - 1][n];
             if (highest < value) continue;
-            if (level == 0) hit(n);
-            else descend(level - 1, n * kFan, end, value, hit);
+            if (level == 0)
+                hit(n);
+            else
+                descend(level - 1, n * kFan, end, value, hit);
         }
     }
 

@@ -35,7 +35,8 @@ struct Box {
                 high[axis] = std::max(high[axis], points[3 * n + axis]);
             }
         }
-        for (std::size_t axis = 0; axis < 3; ++axis) scale[axis] = kSteps / std::max(high[axis] - low[axis], std::numeric_limits<double>::min());
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            scale[axis] = kSteps / std::max(high[axis] - low[axis], std::numeric_limits<double>::min());
     }
 
     // Where a place lies among the steps of an axis; places that are not numbers lie at its start.
@@ -52,7 +53,8 @@ PointNumbers::PointNumbers(std::size_t points_there) : number_(points_there) {
     points.reserve(points_there);
 }
 
-Array<std::uint32_t> morton_order(const double* points, std::size_t size, const std::int32_t* cells, std::size_t count, std::size_t corners) {
+Array<std::uint32_t> morton_order(const double* points, std::size_t size, const std::int32_t* cells, std::size_t count,
+                                  std::size_t corners) {
     const Box box(points, size);
     using Keyed = std::pair<std::uint32_t, std::uint32_t>;  // key, cell
     Array<Keyed> order(count), other(count);
@@ -63,7 +65,8 @@ Array<std::uint32_t> morton_order(const double* points, std::size_t size, const 
             for (std::size_t axis = 0; axis < 3; ++axis) middle[axis] += corner[axis];
         }
         std::uint32_t key = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) key |= kSpread[box.step(middle[axis] / static_cast<double>(corners), axis)] << axis;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            key |= kSpread[box.step(middle[axis] / static_cast<double>(corners), axis)] << axis;
         order[cell] = {key, static_cast<std::uint32_t>(cell)};
     }
     constexpr std::uint32_t kDigit = 1u << kBits;

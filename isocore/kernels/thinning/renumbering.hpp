@@ -1,5 +1,5 @@
-// renumbering.hpp - Cells and points in an order that keeps neighbours close in memory, since both the thinning and the walk
-// are bound by it: cells along a Morton curve through their middles, points by their first cell.
+// renumbering.hpp - Cells and points in an order that keeps neighbours close in memory, since both the thinning and the
+// walk are bound by it: cells along a Morton curve through their middles, points by their first cell.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +28,7 @@ class PointNumbers {
 };
 
 // The order of cells of `corners` points each; points: x, y, z of each of `size`.
-Array<std::uint32_t> morton_order(const double* points, std::size_t size, const std::int32_t* cells, std::size_t count, std::size_t corners);
+Array<std::uint32_t> morton_order(const double* points, std::size_t size, const std::int32_t* cells, std::size_t count,
+                                  std::size_t corners);
 
 }  // namespace isocore::thinning

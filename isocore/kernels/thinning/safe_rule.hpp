@@ -20,7 +20,8 @@ struct Used {
     int euler() const { return std::popcount(corners) - std::popcount(edges) + std::popcount(faces); }
 };
 
-// Is A connected and not empty? Every edge of a face and every end of an edge of A belongs to A, so corners and edges tell.
+// Is A connected and not empty? Every edge of a face and every end of an edge of A belongs to A, so corners and edges
+// tell.
 template <class Cell>
 constexpr bool connected(Mask corners, Mask edges) {
     if (corners == 0) return false;
@@ -41,7 +42,8 @@ inline constexpr auto kTetConnected = [] {
     std::array<std::uint16_t, 64> table{};
     for (Mask edges = 0; edges < 64; ++edges) {
         for (Mask corners = 0; corners < 16; ++corners) {
-            if (connected<mesh::Tet>(corners, edges)) table[edges] = static_cast<std::uint16_t>(table[edges] | 1u << corners);
+            if (connected<mesh::Tet>(corners, edges))
+                table[edges] = static_cast<std::uint16_t>(table[edges] | 1u << corners);
         }
     }
     return table;

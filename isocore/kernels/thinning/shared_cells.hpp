@@ -1,5 +1,5 @@
-// shared_cells.hpp - Cells that several threads still have to walk through. A thread with none left waits here; the others ask
-// now and then whether anyone is `wanted`, and give away half of theirs. Who gets which cells is left open.
+// shared_cells.hpp - Cells that several threads still have to walk through. A thread with none left waits here; the
+// others ask now and then whether anyone is `wanted`, and give away half of theirs. Who gets which cells is left open.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,8 @@ namespace isocore::thinning {
 
 class SharedCells {
   public:
-    // Calls work(cells) for one lot of cells after the other, until no lot is left and no thread works that could give one.
+    // Calls work(cells) for one lot of cells after the other, until no lot is left and no thread works that could give
+    // one.
     template <class Work>
     void take_turns(const Work& work) {
         Array<std::int32_t> lot;
@@ -45,7 +46,8 @@ class SharedCells {
         SharedCells& cells;
     };
 
-    // A walk takes a millisecond or so, less than it takes to wake a thread: waiting ones stay awake, but let others run.
+    // A walk takes a millisecond or so, less than it takes to wake a thread: waiting ones stay awake, but let others
+    // run.
     bool take(Array<std::int32_t>& lot) {
         waiting_.fetch_add(1, std::memory_order_relaxed);
         for (;; std::this_thread::yield()) {

@@ -1,9 +1,9 @@
 // thinner.cpp - T. Itoh, Y. Yamaguchi, K. Koyamada, "Volume Thinning for Automatic Isosurface Propagation", IEEE
 // Visualization 1996; "Fast Isosurface Generation Using the Volume Thinning Algorithm", IEEE TVCG 7(1), 2001.
 //
-// The paper's rules for its classes C1 to C4 are replaced by one that is both safer and thinner (safe_rule.hpp; README.md
-// says where we depart). Every vertex and edge copy keeps the count of the remaining cells that touch it and the XOR of their
-// ids: when the count drops to one, the XOR is the survivor, whose boundary has just come free.
+// The paper's rules for its classes C1 to C4 are replaced by one that is both safer and thinner (safe_rule.hpp;
+// README.md says where we depart). Every vertex and edge copy keeps the count of the remaining cells that touch it and
+// the XOR of their ids: when the count drops to one, the XOR is the survivor, whose boundary has just come free.
 #include "thinning/thinner.hpp"
 
 #include <algorithm>
@@ -68,8 +68,8 @@ class Thinner {
         }
     }
 
-    // Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners across it
-    // may both be.
+    // Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners
+    // across it may both be.
     void mark_extrema(const double* heights) {
         enum : std::uint8_t { kHasLower = 1, kHasHigher = 2 };
         std::vector<std::uint8_t> seen(gluing_.copy_count);
@@ -101,8 +101,10 @@ class Thinner {
 
     Used used(size_t cell) const {
         Used out;
-        for (size_t n = 0; n < Cell::kCorners; ++n) out.corners |= Mask{vertices_[static_cast<size_t>(copies(cell)[n])].count > 1} << n;
-        for (size_t n = 0; n < Cell::kEdges; ++n) out.edges |= Mask{edges_[static_cast<size_t>(edges(cell)[n])].count > 1} << n;
+        for (size_t n = 0; n < Cell::kCorners; ++n)
+            out.corners |= Mask{vertices_[static_cast<size_t>(copies(cell)[n])].count > 1} << n;
+        for (size_t n = 0; n < Cell::kEdges; ++n)
+            out.edges |= Mask{edges_[static_cast<size_t>(edges(cell)[n])].count > 1} << n;
         for (size_t n = 0; n < Cell::kFaces; ++n) {
             const int32_t across = gluing_.neighbour(cell, n);
             out.faces |= Mask{across >= 0 && remains(static_cast<size_t>(across))} << n;
@@ -168,7 +170,8 @@ class Thinner {
             open.pop_back();
             for (size_t face = 0; face < Cell::kFaces; ++face) {
                 const int32_t across = gluing_.neighbour(cell, face);
-                if (across < 0 || remains(static_cast<size_t>(across)) || labels_[static_cast<size_t>(across)] >= 0) continue;
+                if (across < 0 || remains(static_cast<size_t>(across)) || labels_[static_cast<size_t>(across)] >= 0)
+                    continue;
                 labels_[static_cast<size_t>(across)] = label;
                 open.push_back(static_cast<size_t>(across));
             }
@@ -178,7 +181,8 @@ class Thinner {
     int32_t find(int32_t label) {
         auto& parent = outside_;
         while (parent[static_cast<size_t>(label)] != label) {
-            label = parent[static_cast<size_t>(label)] = parent[static_cast<size_t>(parent[static_cast<size_t>(label)])];
+            label = parent[static_cast<size_t>(label)] =
+                parent[static_cast<size_t>(parent[static_cast<size_t>(label)])];
         }
         return label;
     }
@@ -211,12 +215,14 @@ class Thinner {
         size_t count = 0;
         for (size_t face = 0; face < Cell::kFaces; ++face) {
             const int32_t label = outside(cell, face);
-            if (label >= 0 && std::find(seen.begin(), seen.begin() + count, label) == seen.begin() + count) seen[count++] = label;
+            if (label >= 0 && std::find(seen.begin(), seen.begin() + count, label) == seen.begin() + count)
+                seen[count++] = label;
         }
         return count;
     }
 
-    // Opens voids: removes a cell whose free pieces lie at as many different outside components, so that no tunnel is dug.
+    // Opens voids: removes a cell whose free pieces lie at as many different outside components, so that no tunnel is
+    // dug.
     bool may_prick(size_t cell, const Used& left) {
         const int pieces = 2 - left.euler();
         return pieces >= 2 && is_safe(cell, left) && components_at(cell) == static_cast<size_t>(pieces);
@@ -233,13 +239,14 @@ class Thinner {
         return any;
     }
 
-    // Where no single cell reaches both sides: the outside components grow into what remains, and where two of them meet the
-    // cells on the way are removed from one side to the other, as far as each step is safe.
+    // Where no single cell reaches both sides: the outside components grow into what remains, and where two of them
+    // meet the cells on the way are removed from one side to the other, as far as each step is safe.
     bool tunnel() {
         std::vector<int32_t> reached_from(gluing_.cells, -1), owner(gluing_.cells, -1);
         std::vector<size_t> open;
         for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            for (size_t face = 0; remains(cell) && owner[cell] < 0 && face < Cell::kFaces; ++face) owner[cell] = outside(cell, face);
+            for (size_t face = 0; remains(cell) && owner[cell] < 0 && face < Cell::kFaces; ++face)
+                owner[cell] = outside(cell, face);
             if (owner[cell] >= 0) open.push_back(cell);
         }
         for (size_t head = 0; head < open.size(); ++head) {
@@ -262,9 +269,11 @@ class Thinner {
 
     bool open_path(const std::vector<int32_t>& reached_from, size_t one, size_t other) {
         std::vector<size_t> path;
-        for (auto cell = static_cast<int32_t>(one); cell >= 0; cell = reached_from[static_cast<size_t>(cell)]) path.push_back(static_cast<size_t>(cell));
+        for (auto cell = static_cast<int32_t>(one); cell >= 0; cell = reached_from[static_cast<size_t>(cell)])
+            path.push_back(static_cast<size_t>(cell));
         std::reverse(path.begin(), path.end());
-        for (auto cell = static_cast<int32_t>(other); cell >= 0; cell = reached_from[static_cast<size_t>(cell)]) path.push_back(static_cast<size_t>(cell));
+        for (auto cell = static_cast<int32_t>(other); cell >= 0; cell = reached_from[static_cast<size_t>(cell)])
+            path.push_back(static_cast<size_t>(cell));
         for (const size_t cell : path) {
             if (!remains(cell) || !is_safe(cell, used(cell))) return false;
             remove(cell);

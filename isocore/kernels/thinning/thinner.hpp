@@ -14,9 +14,9 @@
 namespace isocore::thinning {
 
 struct Skeleton {
-    Array<std::int32_t> cells;  // ascending
-    std::size_t extrema = 0;    // vertices that are a local minimum or maximum
-    std::size_t outside_components = 0;  // pieces of boundary that are still apart: one per body, and its voids
+    Array<std::int32_t> cells;             // ascending
+    std::size_t extrema = 0;               // vertices that are a local minimum or maximum
+    std::size_t outside_components = 0;    // pieces of boundary that are still apart: one per body, and its voids
     std::array<std::size_t, 7> classes{};  // skeleton cells by the number of face neighbours among them
 };
 

@@ -15,9 +15,9 @@
 
 namespace isocore::thinning {
 
-// A cell of the index: kCorners points, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges between
-// the same two points, and bitwise negated (so below 0) in the first cell that names the edge: its owner, which numbers its
-// vertex. Cells and points are renumbered so that neighbours lie close together.
+// A cell of the index: kCorners points, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges
+// between the same two points, and bitwise negated (so below 0) in the first cell that names the edge: its owner, which
+// numbers its vertex. Cells and points are renumbered so that neighbours lie close together.
 template <class Cell>
 inline constexpr std::size_t kRecord = Cell::kCorners + Cell::kFaces + Cell::kEdges;
 

@@ -1,7 +1,9 @@
-// walk.hpp - The walk itself, on several threads: which cells the isosurface meets, and how much the cells of every block draw.
+// walk.hpp - The walk itself, on several threads: which cells the isosurface meets, and how much the cells of every
+// block draw.
 //
-// Each thread walks breadth first through cells of its own, and a bit per cell says who came first. So the order of the walk is left
-// open, but not what it finds: a set of cells, which the bits hold in the order of their numbers, block by block.
+// Each thread walks breadth first through cells of its own, and a bit per cell says who came first. So the order of the
+// walk is left open, but not what it finds: a set of cells, which the bits hold in the order of their numbers, block by
+// block.
 #pragma once
 
 #include <algorithm>
@@ -46,12 +48,18 @@ class Walk {
     static constexpr std::size_t kWord = 64, kBlock = 64 * kWord;  // cells
 
     Walk(const mesh::Field<Value>& field, const PartView& part, double isovalue)
-        : field_(field), part_(part), isovalue_(isovalue), inside_(isovalue, false), visited_((part.cells + kWord - 1) / kWord) {}
+        : field_(field),
+          part_(part),
+          isovalue_(isovalue),
+          inside_(isovalue, false),
+          visited_((part.cells + kWord - 1) / kWord) {}
 
     // Visits every cell that can be reached from the seeds.
     void run(int threads) {
         Array<std::int32_t> lot;
-        RangeLookup(part_.low, part_.high, part_.skeleton_size).find(isovalue_, [&](std::size_t n) { lot.push_back(part_.skeleton[n]); });
+        RangeLookup(part_.low, part_.high, part_.skeleton_size).find(isovalue_, [&](std::size_t n) {
+            lot.push_back(part_.skeleton[n]);
+        });
         seeds_ = lot.size();
         std::erase_if(lot, [&](std::int32_t cell) { return !mark(cell, true); });
         blocks_.resize(lot.empty() ? 0 : (part_.cells + kBlock - 1) / kBlock);
@@ -61,7 +69,9 @@ class Walk {
         std::vector<std::vector<Amount>> drawn(static_cast<std::size_t>(std::max(1, threads)));
         parallel_for(threads, drawn.size(), [&](std::size_t thread) {
             drawn[thread].resize(blocks_.size());
-            shared.take_turns([&](Array<std::int32_t>& cells) { follow(cells, drawn.size() == 1 ? nullptr : &shared, drawn[thread]); });
+            shared.take_turns([&](Array<std::int32_t>& cells) {
+                follow(cells, drawn.size() == 1 ? nullptr : &shared, drawn[thread]);
+            });
         });
         for (const auto& by_thread : drawn) {
             for (std::size_t block = 0; block < blocks_.size(); ++block) blocks_[block] += by_thread[block];
@@ -82,7 +92,9 @@ class Walk {
         }
     }
 
-    const std::int32_t* record(std::int32_t cell) const { return part_.records + kRecord<Cell> * static_cast<std::size_t>(cell); }
+    const std::int32_t* record(std::int32_t cell) const {
+        return part_.records + kRecord<Cell> * static_cast<std::size_t>(cell);
+    }
 
     mesh::Mask signs(const std::int32_t* corners) const {
         mesh::Mask signs = 0;
@@ -99,7 +111,9 @@ class Walk {
     }
 
     const auto& drawn(const std::int32_t* corners, mesh::Mask signs) const {
-        return mesh::drawn(Cell{}, signs, [&](std::size_t corner) { return static_cast<double>(field_.value(corners[corner])); }, isovalue_);
+        return mesh::drawn(
+            Cell{}, signs, [&](std::size_t corner) { return static_cast<double>(field_.value(corners[corner])); },
+            isovalue_);
     }
 
     void expect(std::int32_t cell) const {
@@ -147,13 +161,16 @@ class Walk {
     }
 
     bool visited(std::int32_t cell) const {
-        return visited_[static_cast<std::size_t>(cell) / kWord].load(std::memory_order_relaxed) >> static_cast<std::size_t>(cell) % kWord & 1;
+        return visited_[static_cast<std::size_t>(cell) / kWord].load(std::memory_order_relaxed) >>
+                   static_cast<std::size_t>(cell) % kWord &
+               1;
     }
 
     // Was the cell not visited before?
     bool mark(std::int32_t cell, bool alone) {
         std::atomic<std::uint64_t>& word = visited_[static_cast<std::size_t>(cell) / kWord];
-        const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(cell) % kWord, before = word.load(std::memory_order_relaxed);
+        const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(cell) % kWord,
+                            before = word.load(std::memory_order_relaxed);
         if (before & bit) return false;
         if (!alone) return !(word.fetch_or(bit, std::memory_order_relaxed) & bit);
         word.store(before | bit, std::memory_order_relaxed);
