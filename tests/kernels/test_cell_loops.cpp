@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "check.hpp"
-#include "common/cell_loops.hpp"
+#include "tables/cell_loops.hpp"
+#include "tables/derive_loops.hpp"
 
 namespace {
 

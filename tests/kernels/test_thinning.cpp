@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "check.hpp"
-#include "common/mesh_cases.hpp"
 #include "marching_cells/marching_cells.hpp"
 #include "marching_cubes/marching_cubes.hpp"
+#include "tables/mesh_cases.hpp"
 #include "thinning/grid_thinning.hpp"
 #include "thinning/range_lookup.hpp"
 #include "thinning/safe_rule.hpp"

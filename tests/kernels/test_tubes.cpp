@@ -12,7 +12,8 @@
 #include "check.hpp"
 #include "marching_cubes/joint.hpp"
 #include "marching_cubes/marching_cubes.hpp"
-#include "marching_cubes/tubes.hpp"
+#include "tables/derive_loops.hpp"
+#include "tables/tubes.hpp"
 
 namespace {
 

@@ -13,6 +13,7 @@
 
 #include "climbing/box_edges.hpp"
 #include "climbing/high_rice.hpp"
+#include "tables/rims.hpp"
 
 namespace isocore::climbing {
 
@@ -37,7 +38,7 @@ class EdgeLoops {
         for (std::size_t n = 0; n < edges.size(); ++n) {
             const std::size_t first = edges.first_kept(n), size = edges.first_kept(n + 1) - first;
             if (static_cast<std::size_t>(std::popcount(boxes_[n].visited)) < size)
-                go_on_in_faces(kept.subspan(first, size), first, (*boxes_[n].stops)[kLength]);
+                go_on_in_faces(kept.subspan(first, size), first, (*boxes_[n].stops)[kRimLength]);
         }
     }
 
@@ -47,30 +48,6 @@ class EdgeLoops {
 
   private:
     static constexpr float kStep = 1 << 16;  // more than any distance along a face
-
-    // Stops of a loop: its rim edges and, between them, its faces. By corner signs; edges first, then faces, then how
-    // many rim edges there are.
-    static constexpr std::size_t kLength = 18;
-    using Stops = std::array<std::uint8_t, kLength + 1>;
-    static constexpr std::array<Stops, 256> kStops = [] {
-        std::array<Stops, 256> stops{};
-        for (unsigned corners = 0; corners < 256; ++corners) {
-            const Rim& rim = kRims[corners];
-            for (std::size_t n = 0; n < rim.length; ++n) {
-                stops[corners][rim.edges[n]] = static_cast<std::uint8_t>(2 * n);
-                stops[corners][12u + rim.faces[n]] = static_cast<std::uint8_t>(2 * n + 1);
-            }
-            stops[corners][kLength] = rim.length;
-        }
-        return stops;
-    }();
-    // By the faces that something lies on: its number in the above.
-    static constexpr std::array<std::uint8_t, 64> kPartOfSurface = [] {
-        std::array<std::uint8_t, 64> parts{};
-        for (std::uint8_t edge = 0; edge < 12; ++edge) parts[kFacesOfEdge[edge]] = edge;
-        for (unsigned face = 0; face < 6; ++face) parts[std::size_t{1} << face] = static_cast<std::uint8_t>(12 + face);
-        return parts;
-    }();
 
     // Adds how far the edges of a box that lie in faces are along these. The first one is of that number.
     void go_on_in_faces(std::span<const BoxEdge> kept, std::size_t first, std::size_t rim_length) {
@@ -96,7 +73,7 @@ class EdgeLoops {
 
     struct Box {
         Edge::Ends ends;
-        const Stops* stops;
+        const LoopStops* stops;
         unsigned visited;  // stops
     };
     std::array<Box, BoxEdges::kMostBoxes> boxes_;

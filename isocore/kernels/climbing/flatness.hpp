@@ -11,31 +11,11 @@
 #include "climbing/cloud.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/vectors.hpp"
+#include "tables/rims.hpp"
 
 namespace isocore::climbing {
 
-// A Rim, a lane for each edge: its axis, whether it is at the high end along each other, and the axis of the face
-// between it and the next.
-struct RimLanes {
-    using Row = std::array<float, kLanes<float>>;
-    Row axes{}, face_axes{};
-    Vector<Row> high{};
-};
-inline constexpr std::array<RimLanes, 256> kRimLanes = [] {
-    std::array<RimLanes, 256> lanes{};
-    for (unsigned signs = 0; signs < 256; ++signs) {
-        for (std::size_t n = 0; n < kLanes<float>; ++n) {
-            const Rim& rim = kRims[signs];
-            const std::size_t here = n < rim.length ? n : 0;
-            const int edge = rim.edges[here];
-            lanes[signs].axes[n] = static_cast<float>(edge / 4);
-            lanes[signs].face_axes[n] = static_cast<float>(rim.faces[here] / 2);
-            for (std::size_t a = 0; a < 3; ++a)
-                lanes[signs].high[a][n] = static_cast<float>(cube::low_corner(edge) >> a & 1);
-        }
-    }
-    return lanes;
-}();
+static_assert(kRimWidth == kLanes<float>);
 
 class Flatness {
   public:

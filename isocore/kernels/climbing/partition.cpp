@@ -18,6 +18,7 @@
 #include "climbing/rim.hpp"
 #include "climbing/survey.hpp"
 #include "common/parallel.hpp"
+#include "tables/rims.hpp"
 
 namespace isocore::climbing {
 namespace {

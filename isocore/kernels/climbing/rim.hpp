@@ -8,47 +8,15 @@
 #include "climbing/high_rice.hpp"
 #include "climbing/layout.hpp"
 #include "climbing/site.hpp"
-#include "common/cube.hpp"
+#include "tables/rims.hpp"
 
 namespace isocore::climbing {
-
-// The crossed edges of a box, by its corner signs.
-inline constexpr std::array<std::uint16_t, 256> kCrossed = [] {
-    std::array<std::uint16_t, 256> crossed{};
-    for (unsigned corners = 0; corners < 256; ++corners) {
-        for (int edge = 0; edge < 12; ++edge) {
-            const unsigned low = corners >> cube::low_corner(edge) & 1, high = corners >> cube::high_corner(edge) & 1;
-            crossed[corners] |= static_cast<std::uint16_t>((low ^ high) << edge);
-        }
-    }
-    return crossed;
-}();
 
 // The ends of a box along each axis: low, high, low, ...
 using Ends = std::array<int, 6>;
 inline Ends ends_of(const HighRice& box) {
     return {box.low[0], box.high[0], box.low[1], box.high[1], box.low[2], box.high[2]};
 }
-
-// Where an edge of a box lies: along which axis, at which of the ends along the other two, and its start as three of
-// them.
-struct Side {
-    std::uint8_t axis;
-    std::array<std::uint8_t, 2> ends;
-    std::array<std::uint8_t, 3> start;
-};
-inline constexpr std::array<Side, 12> kSides = [] {
-    std::array<Side, 12> sides{};
-    for (int edge = 0; edge < 12; ++edge) {
-        const auto across = cube::other_axes(edge / 4);
-        Side& side = sides[static_cast<std::size_t>(edge)];
-        side.axis = static_cast<std::uint8_t>(edge / 4);
-        for (unsigned a = 0; a < 3; ++a)
-            side.start[a] = static_cast<std::uint8_t>(2 * a + (cube::low_corner(edge) >> a & 1));
-        side.ends = {side.start[static_cast<std::size_t>(across[0])], side.start[static_cast<std::size_t>(across[1])]};
-    }
-    return sides;
-}();
 
 // Makes vertices of the crossings on the edges of a box; calls visit(number, axis, place) for those that were none.
 template <class Visit>

@@ -18,6 +18,7 @@
 #include "climbing/rim.hpp"
 #include "climbing/site.hpp"
 #include "common/array.hpp"
+#include "tables/rims.hpp"
 
 namespace isocore::climbing {
 

@@ -4,10 +4,10 @@
 #include <bit>
 #include <cstddef>
 
-#include "common/cell_loops.hpp"
 #include "common/crossing.hpp"
 #include "common/cube.hpp"
 #include "common/grid.hpp"
+#include "tables/cell_loops.hpp"
 
 namespace isocore {
 

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/cell_loops.hpp"
 #include "common/crossing.hpp"
 #include "common/cube.hpp"
 

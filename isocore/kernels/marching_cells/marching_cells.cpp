@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/edge_merger.hpp"
-#include "common/mesh_cases.hpp"
 #include "common/parallel.hpp"
+#include "tables/mesh_cases.hpp"
 
 namespace isocore::marching_cells {
 namespace {

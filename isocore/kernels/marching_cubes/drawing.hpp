@@ -9,13 +9,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/cell_loops.hpp"
 #include "common/decider.hpp"
 #include "common/edge_vertices.hpp"
 #include "common/grid.hpp"
 #include "marching_cubes/cell_rows.hpp"
 #include "marching_cubes/joint.hpp"
-#include "marching_cubes/tubes.hpp"
+#include "tables/cell_loops.hpp"
+#include "tables/tubes.hpp"
 
 namespace isocore::marching_cubes {
 

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "common/cell_loops.hpp"
 #include "common/crossing.hpp"
 #include "common/cube.hpp"
 #include "common/decider.hpp"
 #include "common/mesh_cells.hpp"
 #include "common/parallel.hpp"
+#include "tables/cell_loops.hpp"
 #include "thinning/grid_thinning.hpp"
 #include "thinning/padded_grid.hpp"
 #include "thinning/range_lookup.hpp"

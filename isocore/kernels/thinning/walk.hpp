@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/mesh_cases.hpp"
 #include "common/parallel.hpp"
+#include "tables/mesh_cases.hpp"
 #include "thinning/range_lookup.hpp"
 #include "thinning/shared_cells.hpp"
 #include "thinning/thinning.hpp"

@@ -1,41 +1,27 @@
-// tubes.hpp - Cells that are not only disks: for every case and every two loops that a tube may join, its triangles.
-// Derived at compile time and proved in tests/kernels.
-//
 // The loops of a case part the cell's boundary into groups of corners, inside and outside by turns, which form a tree.
 // Two groups of one side that meet inside the cell turn the group between them into a ring around the joint, and the
 // two loops of that group into the ends of a tube. Its triangles form a strip, each with a side on one loop and its
-// tip on the other; a corner of the longer loop may be cut off first. 196 tubes, none with a vertex of its own.
+// tip on the other; a corner of the longer loop may be cut off first.
 //
-// The rule of cell_loops.hpp for diagonals in a face has no strip for some of them. Here the cell above the face has
+// The rule of derive_loops.hpp for diagonals in a face has no strip for some of them. Here the cell above the face has
 // the diagonals between crossings on parallel edges along either axis, except, in faces of axis 0, along axis 2: those
 // the disks of cells below do draw. All others are the cell below's, as there. Together the rules never meet.
-#pragma once
+#include "tables/tubes.hpp"
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 
-#include "common/cell_loops.hpp"
 #include "common/cube.hpp"
+#include "tables/derive_loops.hpp"
 
 namespace isocore::marching_cubes {
+namespace {
 
-struct Tube {
-    std::uint8_t one = 0, other = 0;  // the groups that meet, a bit per corner
-    cell_loops::CaseOf<12> drawn;     // the whole cell; `loops` counts them as they lie on the boundary
-};
-
-inline constexpr int kTubes = 196;
-
-struct TubeTable {
-    std::array<std::uint16_t, cell_loops::kCases + 1> first{};  // the tubes of a case follow each other
-    std::array<Tube, kTubes> tubes{};
-};
-
-namespace tubes {
-
-using cell_loops::derivation::kForbidden;
+namespace derivation = cell_loops::derivation;
+using derivation::FaceDiagonals;
+using derivation::kForbidden;
 
 constexpr std::size_t at(int n) { return static_cast<std::size_t>(n); }
 
@@ -77,11 +63,11 @@ constexpr bool can_meet(unsigned one, unsigned other) {
 
 constexpr int diagonal_cost(int a, int b) {
     const int face = cube::shared_face(a, b);
-    const int cost = cell_loops::derivation::diagonal_cost(a, b, cell_loops::FaceDiagonals::none);
+    const int cost = derivation::diagonal_cost(a, b, FaceDiagonals::none);
     if (face < 0) return cost;
     const bool for_cell_above = a / 4 == b / 4 && !(face / 2 == 0 && a / 4 == 2);
     const bool cell_is_above = (face & 1) == 0;
-    return cost - (for_cell_above == cell_is_above ? kForbidden - cell_loops::derivation::kInFace : 0);
+    return cost - (for_cell_above == cell_is_above ? kForbidden - derivation::kInFace : 0);
 }
 
 // The cheapest strip between two loops, found by trying all ways round. It starts at ahead[0] and back[start].
@@ -156,7 +142,7 @@ constexpr void draw_strip(const Strip& strip, AnyCase& out) {
     }
 }
 
-constexpr Tube derive_tube(const cell_loops::derivation::Loops& loops, int a, int b, unsigned one, unsigned other) {
+constexpr Tube derive_tube(const derivation::Loops& loops, int a, int b, unsigned one, unsigned other) {
     Tube tube{static_cast<std::uint8_t>(one), static_cast<std::uint8_t>(other), {}};
     tube.drawn.loops = static_cast<std::uint8_t>(loops.count);
     if (loops.lengths[at(a)] > loops.lengths[at(b)]) {
@@ -167,21 +153,20 @@ constexpr Tube derive_tube(const cell_loops::derivation::Loops& loops, int a, in
     draw_strip(Strip(loops.edges[at(a)], loops.lengths[at(a)], loops.edges[at(b)], loops.lengths[at(b)]), tube.drawn);
     for (int n = 0; n < loops.count; ++n) {
         if (n == a || n == b) continue;
-        cell_loops::derivation::triangulate(loops.edges[at(n)], loops.lengths[at(n)],
-                                            cell_loops::FaceDiagonals::shared_out, tube.drawn);
+        derivation::triangulate(loops.edges[at(n)], loops.lengths[at(n)], FaceDiagonals::shared_out, tube.drawn);
     }
     return tube;
 }
 
-constexpr TubeTable derive() {
+constexpr TubeTable derive_tubes() {
     TubeTable table;
     std::size_t filled = 0, case_number = 0;
     for (unsigned corners = 0; corners < 256; ++corners) {
-        const cell_loops::Corners& entry = cell_loops::kTable.corners[corners];
-        for (unsigned packed = 0; packed < 1u << std::popcount(unsigned{entry.ambiguous}); ++packed) {
+        const unsigned ambiguous = derivation::alternating_faces(corners);
+        for (unsigned packed = 0; packed < 1u << std::popcount(ambiguous); ++packed) {
             table.first[case_number++] = static_cast<std::uint16_t>(filled);
-            const unsigned joined = cell_loops::derivation::spread(packed, entry.ambiguous);
-            const auto loops = cell_loops::derivation::trace(corners, joined);
+            const unsigned joined = derivation::spread(packed, ambiguous);
+            const auto loops = derivation::trace(corners, joined);
             const auto group = groups(corners, joined);
             // The groups on the inner and the outer side of a loop.
             const auto side = [&](int loop, unsigned inside) {
@@ -204,8 +189,10 @@ constexpr TubeTable derive() {
     return table;
 }
 
-}  // namespace tubes
+constexpr TubeTable kDerived = derive_tubes();
 
-inline constexpr TubeTable kTubeTable = tubes::derive();
+}  // namespace
+
+constinit const TubeTable kTubeTable = kDerived;
 
 }  // namespace isocore::marching_cubes

@@ -1,16 +1,16 @@
-// cell_loops.hpp - How the surface crosses one cell: a table of cases, derived at compile time and proved in
-// tests/kernels.
+// derive_loops.hpp - From corner signs and face decisions to loops, and from loops to triangles: how the tables of
+// cases are derived. Included where a table is derived or proved, and nowhere else: what is evaluated here takes the
+// compiler seconds.
 //
-// A case is the eight corner signs and, for each face with alternating corners, whether its inside corners are
-// joined. Every face pairs its crossings by that alone, so the segments close to loops, and the cell across the face
-// draws the same segments the other way round. 656 cases, 1,026 loops of 3 to 12 edges.
+// Every face pairs its crossings by its own four corners and, where these alternate, by whether its inside corners are
+// joined. So the segments close to loops, and the cell across the face draws the same segments the other way round.
 //
 // A loop is cut into triangles by diagonals. A diagonal between two edges of one face lies in that face, and if the
 // cell across drew the same one, four triangles would share it. So such diagonals are avoided where they can be; where
 // not, they are shared out: between the two crossings on parallel edges along the face's lower axis only to the cell
 // above the face, all others only to the cell below. Then every loop can be cut without a vertex in its middle.
 //
-// Cells of an unstructured mesh have no above and below, so their table (mesh_cases.hpp) draws no diagonal in a face at
+// Cells of an unstructured mesh have no above and below, so their table (mesh_cases.cpp) draws no diagonal in a face at
 // all: a loop that cannot be cut so gets a vertex in its middle.
 #pragma once
 
@@ -19,35 +19,11 @@
 #include <cstdint>
 
 #include "common/cube.hpp"
+#include "tables/cell_loops.hpp"
 
-namespace isocore::cell_loops {
-
-inline constexpr int kMaxTriangles = 10;
-inline constexpr int kCases = 656;
-
-template <int max_triangles>
-struct CaseOf {
-    std::uint8_t triangles = 0;
-    std::uint8_t loops = 0;
-    std::uint8_t middles = 0;                             // loops that are cut from a vertex in their middle
-    std::array<std::uint8_t, 3 * max_triangles> edges{};  // three per triangle; 12 + n is the n-th middle, always last
-};
-using Case = CaseOf<kMaxTriangles>;
-
-struct Corners {
-    std::uint16_t first = 0;     // its cases follow each other, by the decisions of its ambiguous faces
-    std::uint8_t ambiguous = 0;  // one bit per face with alternating corners
-};
-
-template <class AnyCase>
-struct TableOf {
-    std::array<Corners, 256> corners{};
-    std::array<AnyCase, kCases> cases{};
-};
+namespace isocore::cell_loops::derivation {
 
 enum class FaceDiagonals { shared_out, none };
-
-namespace derivation {
 
 struct Loops {
     std::array<std::array<int, 12>, 4> edges{};
@@ -177,15 +153,21 @@ constexpr unsigned spread(unsigned packed, unsigned mask) {
     return out;
 }
 
+// The faces with alternating corners, a bit each.
+constexpr unsigned alternating_faces(unsigned corners) {
+    unsigned faces = 0;
+    for (int face = 0; face < 6; ++face) {
+        if (cube::alternates(corners, face)) faces |= 1u << face;
+    }
+    return faces;
+}
+
 template <class AnyCase>
 constexpr TableOf<AnyCase> derive(FaceDiagonals rule) {
     TableOf<AnyCase> table;
     unsigned filled = 0;
     for (unsigned corners = 0; corners < 256; ++corners) {
-        unsigned ambiguous = 0;
-        for (int face = 0; face < 6; ++face) {
-            if (cube::alternates(corners, face)) ambiguous |= 1u << face;
-        }
+        const unsigned ambiguous = alternating_faces(corners);
         table.corners[corners] = {static_cast<std::uint16_t>(filled), static_cast<std::uint8_t>(ambiguous)};
         for (unsigned packed = 0; packed < 1u << std::popcount(ambiguous); ++packed) {
             table.cases[filled++] = derive_case<AnyCase>(corners, spread(packed, ambiguous), rule);
@@ -195,9 +177,4 @@ constexpr TableOf<AnyCase> derive(FaceDiagonals rule) {
     return table;
 }
 
-}  // namespace derivation
-
-using CaseTable = TableOf<Case>;
-inline constexpr CaseTable kTable = derivation::derive<Case>(FaceDiagonals::shared_out);
-
-}  // namespace isocore::cell_loops
+}  // namespace isocore::cell_loops::derivation
