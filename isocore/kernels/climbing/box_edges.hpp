@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "climbing/drawn_site.hpp"
-#include "climbing/edge.hpp"
 #include "climbing/high_rice.hpp"
 #include "common/array.hpp"
 #include "common/set_bits.hpp"

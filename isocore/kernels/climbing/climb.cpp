@@ -20,23 +20,19 @@
 #include "climbing/partition.hpp"
 #include "climbing/splitting.hpp"
 #include "climbing/spotter.hpp"
-#include "common/edge_vertices.hpp"
 #include "common/parallel.hpp"
 #include "common/sample_types.hpp"
 #include "common/set_bits.hpp"
 #include "common/signs.hpp"
+#include "samples/sample_reader.hpp"
 
 namespace isocore::climbing {
 namespace {
 
-template <class Sample>
 class Gatherer final : public Judge {
   public:
-    Gatherer(const GridView<Sample>& samples, const SignGrid& signs, const Options& options)
-        : Judge(options.max_error, options.in_world ? options.spacing : Vector<double>{1, 1, 1}),
-          samples_(samples),
-          signs_(signs),
-          isovalue_(options.isovalue) {}
+    Gatherer(const SampleReader& samples, const Options& options)
+        : Judge(options.max_error, options.in_world ? options.spacing : Vector<double>{1, 1, 1}), samples_(samples) {}
 
     void gather(const Site& site, Clouds& clouds, Ligns& ligns) const override {
         struct Row {
@@ -45,20 +41,21 @@ class Gatherer final : public Judge {
         };
         constexpr std::size_t kRowsAtOnce = 24, kRoom = 33 * kRowsAtOnce;
         SetBits<Row, kRowsAtOnce> found;
-        Spotter<Sample, kRoom> spotter(samples_, signs_, isovalue_);
+        Spotter<kRoom> spotter(samples_);
         ligns.clear();
         std::array<std::uint32_t, kRoom> edges;
         const auto add = [&] {
             std::size_t size = 0;
             found.visit([&](const Row& row, int i) {
-                spotter.add(site.origin, static_cast<int>(row.start.axis()), {i, row.start.at(1), row.start.at(2)});
+                spotter.add(row.start.further_along_x(i));
                 edges[size++] = static_cast<std::uint32_t>(ligns.cross(row.ligns, i));
             });
-            spotter.visit(scale, [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
-                clouds.add(places, count);
-                const auto each = shares.each();
-                for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];
-            });
+            spotter.visit(site.origin, scale,
+                          [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
+                              clouds.add(places, count);
+                              const auto each = shares.each();
+                              for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];
+                          });
         };
         for (const Edge& start : site.crossed_rows()) {
             const int j = start.at(1), k = start.at(2);
@@ -69,24 +66,22 @@ class Gatherer final : public Judge {
     }
 
   private:
-    const GridView<Sample>& samples_;
-    const SignGrid& signs_;
-    double isovalue_;
+    const SampleReader& samples_;
 };
 
 // One extraction, step by step; climb() below is their order.
-template <class Sample, class Coordinate>
+template <class Coordinate>
 class Climb {
   public:
-    Climb(const GridView<Sample>& samples, const Options& options, const Sample* ranges)
+    Climb(const SampleReader& samples, const SignGrid& signs, const Options& options)
         : samples_(samples),
+          signs_(signs),
           options_(options),
-          signs_(classify(samples, options.isovalue, options.below, options.capped, options.threads, ranges)),
           bars_(lay_out_bars(signs_, options.block_size)),
           layout_(signs_, options.block_size, options.threads) {}
 
     void partition() {
-        const Gatherer<Sample> gatherer(samples_, signs_, options_);
+        const Gatherer gatherer(samples_, options_);
         const bool bounded = std::isfinite(options_.max_error);
         auto boxes =
             partition_bars(signs_, options_.block_size, options_.threads, bounded ? &gatherer : nullptr, layout_);
@@ -104,13 +99,12 @@ class Climb {
                 std::size_t crossing = layout_.first_crossing(start, k);
                 Coordinate* out = mesh_.vertices.data() + 3 * layout_.vertex(crossing);
                 for (std::size_t j = start; j < std::min(start + layout_.strip, rows); ++j) {
-                    out = write_row_vertices(samples_, signs_, options_.isovalue, j, k, out,
-                                             [&](auto axis, std::size_t w) {
-                                                 const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
-                                                 const std::size_t first = crossing;
-                                                 crossing += static_cast<std::size_t>(std::popcount(crossed));
-                                                 return layout_.kept(crossed, first);
-                                             });
+                    out = write_row_vertices(samples_, signs_, j, k, out, [&](auto axis, std::size_t w) {
+                        const std::uint64_t crossed = crossed_edges(signs_, axis, j, k, w);
+                        const std::size_t first = crossing;
+                        crossing += static_cast<std::size_t>(std::popcount(crossed));
+                        return layout_.kept(crossed, first);
+                    });
                 }
             }
         });
@@ -174,8 +168,9 @@ class Climb {
         make_room(late, mesh_.vertices);
         for (const LateVertex& vertex : late) {
             const auto& [i, j, k] = vertex.at;
-            write_vertex(samples_, signs_, options_.isovalue, vertex.axis, i, j, k,
-                         mesh_.vertices.data() + 3 * vertex.vertex);
+            CrossedWords edge;
+            edge.add(1, {vertex.axis, i});
+            samples_.write_vertices(j, k, edge, mesh_.vertices.data() + 3 * vertex.vertex);
         }
         parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) {
             const Bar& bar = bars_.bars[n];
@@ -185,7 +180,8 @@ class Climb {
 
     // Numbers that may be kept aside: little beside the samples, but enough for all threads to be at work.
     std::size_t most_early() const {
-        const std::size_t samples = samples_.dims[0] * samples_.dims[1] * samples_.dims[2];
+        std::size_t samples = 1;
+        for (const std::size_t dim : signs_.dims) samples *= dim - 2 * signs_.pad;
         return std::max<std::size_t>(samples / 512, 8192 * static_cast<std::size_t>(std::max(options_.threads, 1)));
     }
 
@@ -196,20 +192,18 @@ class Climb {
     // put(triangles) for some after the other.
     template <class Visit>
     void draw_stale(const Visit& visit) {
-        using AnyDrawer = Drawer<Sample, Coordinate>;
-        const auto make = [&] {
-            return std::make_unique<AnyDrawer>(samples_, signs_, layout_, options_, mesh_.vertices.data());
-        };
+        const PlacedVertices vertices(mesh_.vertices.data());
+        const auto make = [&] { return std::make_unique<Drawer>(samples_, signs_, layout_, options_, vertices); };
         parallel_for(options_.threads, bars_.bars.size(), make,
-                     [&](const std::unique_ptr<AnyDrawer>& drawer, std::size_t n) {
+                     [&](const std::unique_ptr<Drawer>& drawer, std::size_t n) {
                          if (bars_.bars[n].stale)
                              visit(n, [&](const auto& put) { drawer->draw(bars_, n, bars_.bars[n], put); });
                      });
     }
 
-    GridView<Sample> samples_;
+    const SampleReader& samples_;
+    const SignGrid& signs_;
     const Options& options_;
-    SignGrid signs_;
     Bars bars_;
     Layout layout_;
     Mesh<Coordinate> mesh_;
@@ -222,7 +216,9 @@ Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const S
     if (*std::min_element(samples.dims.begin(), samples.dims.end()) < 2) {
         throw std::invalid_argument("climbing needs two samples per axis");
     }
-    Climb<Sample, Coordinate> work(samples, options, ranges);
+    const SignGrid signs = classify(samples, options.isovalue, options.below, options.capped, options.threads, ranges);
+    const SamplesOf<Sample> reader(samples, signs, options.isovalue);
+    Climb<Coordinate> work(reader, signs, options);
     work.partition();
     work.number_and_place_vertices();
     work.draw();

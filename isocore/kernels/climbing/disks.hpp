@@ -15,6 +15,7 @@
 #include "climbing/drawn_site.hpp"
 #include "climbing/edge_loops.hpp"
 #include "climbing/halvings.hpp"
+#include "climbing/placed_vertices.hpp"
 #include "climbing/polygon.hpp"
 #include "climbing/polygons.hpp"
 #include "climbing/ruler.hpp"
@@ -22,15 +23,10 @@
 
 namespace isocore::climbing {
 
-template <class Sample, class Coordinate>
 class Disks {
   public:
-    Disks(const GridView<Sample>& samples, const SignGrid& signs, const Options& options, const Coordinate* vertices)
-        : signs_(signs),
-          options_(options),
-          vertices_(vertices),
-          edges_(options.block_size),
-          ruler_(samples, signs, options) {}
+    Disks(const SampleReader& samples, const SignGrid& signs, const Options& options, const PlacedVertices& vertices)
+        : signs_(signs), options_(options), vertices_(vertices), edges_(options.block_size), ruler_(samples, options) {}
 
     // Before the first block of a bar.
     void begin_bar() { drawn_ = 0; }
@@ -87,24 +83,19 @@ class Disks {
     }
 
     // Where numbers of a box are small when taken from.
-    std::array<Coordinate, 3> origin(const DrawnSite& site, std::size_t box) const {
-        std::array<Coordinate, 3> out;
+    Vector<double> origin(const DrawnSite& site, std::size_t box) const {
+        Vector<double> out;
         for (std::size_t a = 0; a < 3; ++a)
-            out[a] =
-                static_cast<Coordinate>(site.origin[a] + edges_.box(box).low[a]) - static_cast<Coordinate>(signs_.pad);
+            out[a] = static_cast<double>(site.origin[a] + edges_.box(box).low[a]) - static_cast<double>(signs_.pad);
         return out;
     }
 
     // Calls set(place, faces, vertex) for the n-th of all kept edges.
     template <class Set>
-    void set_corner(const DrawnSite& site, std::size_t n, const std::array<Coordinate, 3>& origin,
-                    const Set& set) const {
+    void set_corner(const DrawnSite& site, std::size_t n, const Vector<double>& origin, const Set& set) const {
         const Edge edge = edges_.kept()[n].edge();
         const std::int32_t number = site.vertex(edge.axis(), edge.at());
-        const Coordinate* place = vertices_ + 3 * static_cast<std::size_t>(number);
-        Spot from_there;
-        for (std::size_t a = 0; a < 3; ++a) from_there[a] = static_cast<float>(place[a] - origin[a]);
-        set(from_there, loops_.faces(n), number);
+        set(vertices_.from(origin, static_cast<std::size_t>(number)), loops_.faces(n), number);
     }
 
     template <std::size_t length>
@@ -186,7 +177,7 @@ class Disks {
 
     const SignGrid& signs_;
     const Options& options_;
-    const Coordinate* vertices_;
+    PlacedVertices vertices_;
     BoxEdges edges_;
     EdgeLoops loops_;
     std::array<std::array<std::uint8_t, BoxEdges::kMostBoxes>, kLongestOfSeveral + 2> by_length_;  // boxes
@@ -194,7 +185,7 @@ class Disks {
     decltype(all_polygons(std::make_index_sequence<kLongestOfSeveral - 2>{})) polygons_;
     Polygon polygon_;
     std::array<std::pair<float, std::uint32_t>, BoxEdges::kMostOfBox> order_;
-    Ruler<Sample> ruler_;
+    Ruler ruler_;
     std::size_t drawn_ = 0;  // boxes of the bar
 };
 

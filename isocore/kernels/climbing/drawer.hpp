@@ -13,20 +13,19 @@
 #include "climbing/drawn_site.hpp"
 #include "climbing/halvings.hpp"
 #include "climbing/triangle_list.hpp"
-#include "common/decider.hpp"
+#include "samples/sample_reader.hpp"
+#include "tables/cell_loops.hpp"
 
 namespace isocore::climbing {
 
 // Draws the highrices of a bar and has them measured on the way.
-template <class Sample, class Coordinate>
 class Drawer {
   public:
-    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const Layout& layout, const Options& options,
-           const Coordinate* vertices)
+    Drawer(const SampleReader& samples, const SignGrid& signs, const Layout& layout, const Options& options,
+           const PlacedVertices& vertices)
         : samples_(samples),
           signs_(signs),
           layout_(layout),
-          options_(options),
           site_(options.block_size),
           rices_(options.block_size),
           disks_(samples, signs, options, vertices) {}
@@ -77,7 +76,7 @@ class Drawer {
                 const Dims cell{site_.origin[0] + static_cast<std::size_t>(x),
                                 site_.origin[1] + static_cast<std::size_t>(j),
                                 site_.origin[2] + static_cast<std::size_t>(k)};
-                decisions = decide_faces(samples_, signs_.pad, options_.isovalue, corners, cell);
+                decisions = samples_.decide_faces(corners, cell);
                 ++bar.ambiguous_cells;
                 bar.ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
             }
@@ -110,14 +109,13 @@ class Drawer {
         return out;
     }
 
-    const GridView<Sample>& samples_;
+    const SampleReader& samples_;
     const SignGrid& signs_;
     const Layout& layout_;
-    const Options& options_;
     DrawnSite site_;
     BlockRices rices_;
     TriangleList triangles_;  // of one block
-    Disks<Sample, Coordinate> disks_;
+    Disks disks_;
 };
 
 }  // namespace isocore::climbing

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "climbing/box_edges.hpp"
+#include "climbing/box_ends.hpp"
 #include "climbing/high_rice.hpp"
 #include "tables/rims.hpp"
 
@@ -23,12 +24,12 @@ class EdgeLoops {
     void arrange(const BoxEdges& edges, const DrawnSite& site) {
         for (std::size_t n = 0; n < edges.size(); ++n) {
             const unsigned corners = site.corners(edges.box(n));
-            boxes_[n] = {Edge::Ends(edges.box(n)), &kStops[corners], 0};
+            boxes_[n] = {BoxEnds(edges.box(n)), &kStops[corners], 0};
         }
         const auto kept = edges.kept();
         for (std::size_t n = 0; n < kept.size(); ++n) {
             Box& box = boxes_[kept[n].box()];
-            const auto faces = static_cast<std::uint8_t>(kept[n].edge().faces(box.ends));
+            const auto faces = static_cast<std::uint8_t>(box.ends.faces(kept[n].edge()));
             const std::uint8_t stop = (*box.stops)[kPartOfSurface[faces]];
             faces_[n] = faces;
             stops_[n] = stop;
@@ -72,7 +73,7 @@ class EdgeLoops {
     }
 
     struct Box {
-        Edge::Ends ends;
+        BoxEnds ends;
         const LoopStops* stops;
         unsigned visited;  // stops
     };

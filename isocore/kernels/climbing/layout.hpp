@@ -1,6 +1,6 @@
 // layout.hpp - How neighbours share their cuts. The paper lays out every face again after comparing the cuts of the
 // highrices on both sides; here both sides keep the crossings on the twelve edges of their boxes, and what is kept by
-// any box is a vertex of the mesh. One bit per crossing, in the order of edge_vertices.hpp, is all that this takes.
+// any box is a vertex of the mesh. One bit per crossing, in the order of crossed_edges.hpp, is all that this takes.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 #include "common/array.hpp"
 #include "common/bit_fields.hpp"
-#include "common/edge_vertices.hpp"
 #include "common/parallel.hpp"
+#include "samples/crossed_edges.hpp"
 
 namespace isocore::climbing {
 

@@ -19,13 +19,12 @@
 
 namespace isocore::climbing {
 
-template <class Sample>
 class Ruler {
   public:
-    Ruler(const GridView<Sample>& samples, const SignGrid& signs, const Options& options)
+    Ruler(const SampleReader& samples, const Options& options)
         : options_(options),
           unit_(*std::max_element(options.spacing.begin(), options.spacing.end())),
-          spotter_(samples, signs, options.isovalue) {
+          spotter_(samples) {
         for (std::size_t a = 0; a < 3; ++a) stretch_[a] = static_cast<float>(options.spacing[a] / unit_);
         if (stretch_ != kNoStretch) world_ = std::make_unique<Measured>();
         // In the units of the distances, and rounded down.
@@ -39,7 +38,7 @@ class Ruler {
         std::size_t placed = 0;
         const auto place_added = [&] {
             const std::size_t start = placed;
-            spotter_.visit(kNoStretch,
+            spotter_.visit(origin, kNoStretch,
                            [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t count) {
                                for (std::size_t a = 0; a < 3; ++a) {
                                    places[a].store(voxels_.places[a].data() + start + first);
@@ -50,7 +49,7 @@ class Ruler {
                            });
         };
         for (const BoxEdge& found : edges.dropped()) {
-            spotter_.add(origin, static_cast<int>(found.edge().axis()), found.edge().at(), edges.box(found.box()).low);
+            spotter_.add(found.edge(), edges.box(found.box()).low);
             if (spotter_.full()) place_added();
         }
         place_added();
@@ -137,7 +136,7 @@ class Ruler {
     float limit_;
     std::vector<Box> boxes_;
     std::size_t crossings_ = 0;  // of these
-    Spotter<Sample, kPlacedAtOnce> spotter_;
+    Spotter<kPlacedAtOnce> spotter_;
     Row squared_;  // distances
     Measured voxels_;
     std::unique_ptr<Measured> world_;  // where a voxel is not as long along all axes

@@ -6,41 +6,35 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "climbing/site.hpp"
 #include "climbing/vectors.hpp"
 #include "common/crossing.hpp"
-#include "common/edge_vertices.hpp"
-#include "common/grid.hpp"
 #include "common/lanes.hpp"
-#include "common/signs.hpp"
+#include "samples/sample_reader.hpp"
 
 namespace isocore::climbing {
 
-template <class Sample, std::size_t room>
+template <std::size_t room>
 class Spotter {
   public:
     using Numbers = Lanes<float>;
 
-    Spotter(const GridView<Sample>& samples, const SignGrid& signs, double isovalue)
-        : samples_(samples), signs_(signs), isovalue_(isovalue) {}
+    explicit Spotter(const SampleReader& samples) : samples_(samples) {}
 
     bool full() const { return size_ == room; }
 
-    // Adds the crossed edge along `axis` that starts at the sample `at` of the block at `origin`, as seen from the
-    // sample `from`.
-    void add(const Dims& origin, int axis, const Place& at, const std::array<std::uint8_t, 3>& from = {}) {
-        const auto whole = [&](std::size_t a) { return origin[a] + static_cast<std::size_t>(at[a]); };
-        for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(at[a] - from[a]);
-        axes_[size_] = static_cast<float>(axis);
-        const Quotient crossing = edge_quotient(samples_, signs_, isovalue_, axis, whole(0), whole(1), whole(2));
-        parts_[size_] = crossing.part;
-        wholes_[size_++] = crossing.whole;
+    // Adds a crossed edge, to be seen from the sample `from`.
+    void add(const Edge& edge, const std::array<std::uint8_t, 3>& from = {}) {
+        edges_[size_] = edge;
+        for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(edge.at(a) - from[a]);
+        axes_[size_++] = static_cast<float>(edge.axis());
     }
 
-    // Calls visit(places, shares, first, count) for all that were added, in their order, `count` lanes at a time, and
-    // forgets them. The places are stretched; the shares are of the edges' ways.
+    // Calls visit(places, shares, first, count) for all that were added, which belong to the block at `origin`, in
+    // their order, `count` lanes at a time, and forgets them. Places are multiplied by `scale`; a share is how far
+    // along its edge a crossing is, from 0 to 1.
     template <class Visit>
-    void visit(const Spot& scale, const Visit& visit) {
+    void visit(const Dims& origin, const Spot& scale, const Visit& visit) {
+        samples_.quotients(origin, {edges_.data(), size_}, parts_.data(), wholes_.data());
         const Numbers zero(0.0f), lowest(static_cast<float>(kClamp)), highest(static_cast<float>(1 - kClamp));
         for (std::size_t n = 0; n < size_; n += kLanes<float>) {
             const Numbers share =
@@ -59,10 +53,9 @@ class Spotter {
   private:
     using Row = std::array<float, room + kLanes<float>>;
 
-    const GridView<Sample>& samples_;
-    const SignGrid& signs_;
-    double isovalue_;
+    const SampleReader& samples_;
     std::size_t size_ = 0;
+    std::array<Edge, room> edges_;
     Vector<Row> starts_;
     Row axes_, parts_, wholes_;
 };

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/edge_vertices.hpp"
 #include "common/signs.hpp"
+#include "samples/crossed_edges.hpp"
 
 namespace isocore::marching_cubes {
 

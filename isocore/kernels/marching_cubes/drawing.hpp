@@ -9,21 +9,20 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/decider.hpp"
-#include "common/edge_vertices.hpp"
 #include "common/grid.hpp"
 #include "marching_cubes/cell_rows.hpp"
 #include "marching_cubes/joint.hpp"
+#include "samples/sample_reader.hpp"
 #include "tables/cell_loops.hpp"
 #include "tables/tubes.hpp"
 
 namespace isocore::marching_cubes {
 
 // Draws the cells of one row after the other, keeping the vertex numbers of the twelve edges at hand.
-template <class Sample, bool tubes>
+template <bool tubes>
 class Drawer {
   public:
-    Drawer(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases, double isovalue,
+    Drawer(const SampleReader& samples, const SignGrid& signs, const std::vector<RowBase>& bases, double isovalue,
            bool below)
         : samples_(samples), signs_(signs), bases_(bases), isovalue_(isovalue), below_(below) {}
 
@@ -105,22 +104,21 @@ class Drawer {
         if (entry.ambiguous == 0) return cell_loops::kTable.cases[entry.first];
         ++ambiguous_cells;
         ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
-        return cell_loops::kTable
-            .cases[entry.first + decide_faces(samples_, signs_.pad, isovalue_, corners, {i, j, k})];
+        return cell_loops::kTable.cases[entry.first + samples_.decide_faces(corners, {i, j, k})];
     }
 
     // The tube of a cell of several loops, or null. Beyond the border everything is outside, and nothing meets there.
     const Tube* find_tube(const cell_loops::Case& drawn, unsigned corners, const Dims& cell) const {
-        std::array<double, 8> values;
         for (std::size_t c = 0; c < 8; ++c) {
             const Dims at{cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)};
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 if (at[axis] < signs_.pad || at[axis] >= signs_.dims[axis] - signs_.pad) return nullptr;
             }
-            const auto sample =
-                static_cast<double>(samples_.at(at[0] - signs_.pad, at[1] - signs_.pad, at[2] - signs_.pad));
-            values[c] = below_ ? isovalue_ - sample : sample - isovalue_;
-            if (!std::isfinite(values[c])) return nullptr;
+        }
+        std::array<double, 8> values = samples_.corners(cell);
+        for (double& value : values) {
+            value = below_ ? isovalue_ - value : value - isovalue_;
+            if (!std::isfinite(value)) return nullptr;
         }
         const Joint joint = find_joint(values, corners);
         const auto number = static_cast<std::size_t>(&drawn - cell_loops::kTable.cases.data());
@@ -133,7 +131,7 @@ class Drawer {
         return nullptr;
     }
 
-    const GridView<Sample>& samples_;
+    const SampleReader& samples_;
     const SignGrid& signs_;
     const std::vector<RowBase>& bases_;
     double isovalue_;

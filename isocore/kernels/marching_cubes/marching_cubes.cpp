@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "common/edge_vertices.hpp"
 #include "common/gaps.hpp"
 #include "common/parallel.hpp"
 #include "common/sample_types.hpp"
 #include "common/signs.hpp"
 #include "marching_cubes/counting.hpp"
 #include "marching_cubes/drawing.hpp"
+#include "samples/sample_reader.hpp"
 
 namespace isocore::marching_cubes {
 namespace {
@@ -44,20 +44,20 @@ std::vector<Slab> make_slabs(const std::vector<LayerCount>& layers, std::size_t 
     return slabs;
 }
 
-template <bool tubes, class Sample, class Coordinate>
-void draw_slabs(const GridView<Sample>& samples, const SignGrid& signs, const std::vector<RowBase>& bases,
+template <bool tubes, class Coordinate>
+void draw_slabs(const SampleReader& samples, const SignGrid& signs, const std::vector<RowBase>& bases,
                 const Options& options, std::vector<Slab>& slabs, Mesh<Coordinate>& mesh) {
     const std::size_t rows = signs.dims[1], planes = signs.dims[2];
     parallel_for(options.threads, slabs.size(), [&](std::size_t s) {
         Slab& slab = slabs[s];
-        Drawer<Sample, tubes> drawer(samples, signs, bases, options.isovalue, options.below);
+        Drawer<tubes> drawer(samples, signs, bases, options.isovalue, options.below);
         Coordinate* vertex = mesh.vertices.data() + 3 * slab.first_vertex;
         std::int32_t* const first = mesh.triangles.data() + 3 * slab.first_triangle;
         const std::int32_t* const limit = first + 3 * slab.triangles;
         std::int32_t* triangle = first;
         for (std::size_t k = slab.first_plane; k < slab.end_plane; ++k) {
             for (std::size_t j = 0; j < rows; ++j) {
-                vertex = write_row_vertices(samples, signs, options.isovalue, j, k, vertex);
+                vertex = write_row_vertices(samples, signs, j, k, vertex);
                 if (k + 1 < planes && j + 1 < rows) triangle = drawer.draw(j, k, triangle, limit);
             }
         }
@@ -76,6 +76,7 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
         throw std::invalid_argument("marching cubes needs two samples per axis");
     }
     const SignGrid signs = classify(samples, options.isovalue, options.below, options.capped, options.threads);
+    const SamplesOf<Sample> reader(samples, signs, options.isovalue);
     std::vector<RowBase> bases;
     const std::vector<LayerCount> layers = count_layers(signs, bases, options.trilinear, options.threads);
 
@@ -91,9 +92,9 @@ Mesh<Coordinate> march(GridView<Sample> samples, const Options& options) {
 
     std::vector<Slab> slabs = make_slabs(layers, std::max<std::size_t>(4096, (total.vertices + total.triangles) / 64));
     if (options.trilinear)
-        draw_slabs<true>(samples, signs, bases, options, slabs, mesh);
+        draw_slabs<true>(reader, signs, bases, options, slabs, mesh);
     else
-        draw_slabs<false>(samples, signs, bases, options, slabs, mesh);
+        draw_slabs<false>(reader, signs, bases, options, slabs, mesh);
     close_gaps(slabs, mesh.triangles);
     for (const Slab& slab : slabs) {
         mesh.ambiguous_faces += slab.ambiguous_faces;

@@ -1,0 +1,108 @@
+#include "samples/sample_reader.hpp"
+
+#include <type_traits>
+
+#include "common/crossing.hpp"
+#include "common/decider.hpp"
+#include "common/sample_types.hpp"
+
+namespace isocore {
+namespace {
+
+// Where an edge into the padding is crossed: next to the volume's own sample. 0 for any other edge.
+double border_crossing(const SignGrid& signs, int axis, std::size_t start) {
+    if (!signs.pad) return 0;
+    return start == 0 ? 1 - kClamp : start == signs.dims[static_cast<std::size_t>(axis)] - 2 ? kClamp : 0;
+}
+
+// The lower sample of a grid edge that is not in the padding.
+template <class Sample>
+const Sample* edge_start(const GridView<Sample>& samples, const SignGrid& signs, const Dims& at) {
+    return samples.data + samples.index(at[0] - signs.pad, at[1] - signs.pad, at[2] - signs.pad);
+}
+
+// Where the grid edge along `axis` that starts at a sample is crossed, as a share of the way.
+template <class Sample>
+double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis,
+                     const Dims& at) {
+    if (const double share = border_crossing(signs, axis, at[static_cast<std::size_t>(axis)]); share > 0) return share;
+    const Sample* low = edge_start(samples, signs, at);
+    return crossing(low[0], low[samples.step(axis)], isovalue);
+}
+
+struct Quotient {
+    float part, whole;
+};
+template <class Sample>
+Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis,
+                       const Dims& at) {
+    if constexpr (std::is_integral_v<Sample>) {
+        if (const double share = border_crossing(signs, axis, at[static_cast<std::size_t>(axis)]); share > 0)
+            return {static_cast<float>(share), 1};
+        const Sample* low = edge_start(samples, signs, at);
+        const double from = static_cast<double>(low[0]);
+        return {static_cast<float>(isovalue - from),
+                static_cast<float>(static_cast<double>(low[samples.step(axis)]) - from)};
+    } else {
+        return {static_cast<float>(edge_crossing(samples, signs, isovalue, axis, at)), 1};
+    }
+}
+
+template <class Sample, class Coordinate>
+Coordinate* write_words(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
+                        std::size_t k, CrossedWords& words, Coordinate* out) {
+    const double pad = static_cast<double>(signs.pad);
+    words.visit([&](const WordOfEdges& word, int bit) {
+        const Dims at{word.first + static_cast<std::size_t>(bit), j, k};
+        const double share = edge_crossing(samples, signs, isovalue, word.axis, at);
+        for (int a = 0; a < 3; ++a) {
+            *out++ = static_cast<Coordinate>(static_cast<double>(at[static_cast<std::size_t>(a)]) - pad +
+                                             (a == word.axis ? share : 0.0));
+        }
+    });
+    return out;
+}
+
+}  // namespace
+
+template <class Sample>
+void SamplesOf<Sample>::quotients(const Dims& origin, std::span<const Edge> edges, float* parts, float* wholes) const {
+    for (std::size_t n = 0; n < edges.size(); ++n) {
+        const Edge edge = edges[n];
+        Dims at;
+        for (std::size_t a = 0; a < 3; ++a) at[a] = origin[a] + static_cast<std::size_t>(edge.at(a));
+        const Quotient crossing = edge_quotient(samples_, signs_, isovalue_, static_cast<int>(edge.axis()), at);
+        parts[n] = crossing.part;
+        wholes[n] = crossing.whole;
+    }
+}
+
+template <class Sample>
+float* SamplesOf<Sample>::write_vertices(std::size_t j, std::size_t k, CrossedWords& words, float* out) const {
+    return write_words(samples_, signs_, isovalue_, j, k, words, out);
+}
+template <class Sample>
+double* SamplesOf<Sample>::write_vertices(std::size_t j, std::size_t k, CrossedWords& words, double* out) const {
+    return write_words(samples_, signs_, isovalue_, j, k, words, out);
+}
+
+template <class Sample>
+unsigned SamplesOf<Sample>::decide_faces(unsigned corners, const Dims& cell) const {
+    return isocore::decide_faces(samples_, signs_.pad, isovalue_, corners, cell);
+}
+
+template <class Sample>
+std::array<double, 8> SamplesOf<Sample>::corners(const Dims& cell) const {
+    std::array<double, 8> out;
+    for (std::size_t c = 0; c < 8; ++c) {
+        const Dims at{cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2)};
+        out[c] = static_cast<double>(samples_.at(at[0] - signs_.pad, at[1] - signs_.pad, at[2] - signs_.pad));
+    }
+    return out;
+}
+
+#define ISOCORE_INSTANTIATE(Sample) template class SamplesOf<Sample>;
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
+#undef ISOCORE_INSTANTIATE
+
+}  // namespace isocore
