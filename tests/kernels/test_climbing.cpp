@@ -6,8 +6,8 @@
 
 #include "check.hpp"
 #include "climbing/climb.hpp"
-#include "climbing/dike.hpp"
-#include "common/sample_ranges.hpp"
+#include "climbing/boxes/dike.hpp"
+#include "samples/sample_ranges.hpp"
 #include "small_volumes.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/facets.hpp"
+#include "climbing/error/facets.hpp"
 #include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/block_rices.hpp"
-#include "climbing/halvings.hpp"
+#include "climbing/boxes/block_rices.hpp"
+#include "climbing/boxes/halvings.hpp"
 
 namespace {
 

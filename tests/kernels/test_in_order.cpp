@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/in_order.hpp"
+#include "climbing/triangles/in_order.hpp"
 #include "common/array.hpp"
 #include "common/parallel.hpp"
 

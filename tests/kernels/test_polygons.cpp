@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/polygon.hpp"
-#include "climbing/polygons.hpp"
+#include "climbing/triangles/polygon.hpp"
+#include "climbing/triangles/polygons.hpp"
 #include "climbing/vectors.hpp"
 
 namespace {

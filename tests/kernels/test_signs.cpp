@@ -6,7 +6,7 @@
 
 #include "check.hpp"
 #include "common/grid.hpp"
-#include "common/signs.hpp"
+#include "samples/signs.hpp"
 #include "small_volumes.hpp"
 
 namespace {

@@ -11,8 +11,8 @@
 
 #include "common/cube.hpp"
 #include "common/parallel.hpp"
-#include "common/sample_types.hpp"
-#include "common/signs.hpp"
+#include "samples/sample_types.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::ambiguities {
 namespace {

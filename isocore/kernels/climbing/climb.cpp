@@ -13,61 +13,21 @@
 #include <utility>
 #include <vector>
 
-#include "climbing/bars.hpp"
+#include "climbing/boxes/bars.hpp"
+#include "climbing/boxes/partition.hpp"
+#include "climbing/crossings/gatherer.hpp"
+#include "climbing/crossings/layout.hpp"
 #include "climbing/drawer.hpp"
-#include "climbing/in_order.hpp"
-#include "climbing/layout.hpp"
-#include "climbing/partition.hpp"
-#include "climbing/splitting.hpp"
-#include "climbing/spotter.hpp"
+#include "climbing/error/splitting.hpp"
+#include "climbing/triangles/in_order.hpp"
 #include "common/parallel.hpp"
-#include "common/sample_types.hpp"
 #include "common/set_bits.hpp"
-#include "common/signs.hpp"
 #include "samples/sample_reader.hpp"
+#include "samples/sample_types.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::climbing {
 namespace {
-
-class Gatherer final : public Judge {
-  public:
-    Gatherer(const SampleReader& samples, const Options& options)
-        : Judge(options.max_error, options.in_world ? options.spacing : Vector<double>{1, 1, 1}), samples_(samples) {}
-
-    void gather(const Site& site, Clouds& clouds, Ligns& ligns) const override {
-        struct Row {
-            Edge start;
-            Ligns::Row ligns;
-        };
-        constexpr std::size_t kRowsAtOnce = 24, kRoom = 33 * kRowsAtOnce;
-        SetBits<Row, kRowsAtOnce> found;
-        Spotter<kRoom> spotter(samples_);
-        ligns.clear();
-        std::array<std::uint32_t, kRoom> edges;
-        const auto add = [&] {
-            std::size_t size = 0;
-            found.visit([&](const Row& row, int i) {
-                spotter.add(row.start.further_along_x(i));
-                edges[size++] = static_cast<std::uint32_t>(ligns.cross(row.ligns, i));
-            });
-            spotter.visit(site.origin, scale,
-                          [&](const auto& places, const auto& shares, std::size_t start, std::size_t count) {
-                              clouds.add(places, count);
-                              const auto each = shares.each();
-                              for (std::size_t n = 0; n < count; ++n) ligns.shares[edges[start + n]] = each[n];
-                          });
-        };
-        for (const Edge& start : site.crossed_rows()) {
-            const int j = start.at(1), k = start.at(2);
-            found.add(site.row(j, k).crossed[start.axis()], {start, Ligns::row(site.samples(), start.axis(), j, k)});
-            if (found.full()) add();
-        }
-        add();
-    }
-
-  private:
-    const SampleReader& samples_;
-};
 
 // One extraction, step by step; climb() below is their order.
 template <class Coordinate>

@@ -10,16 +10,16 @@
 #include <tuple>
 #include <utility>
 
-#include "climbing/box_edges.hpp"
-#include "climbing/climb.hpp"
-#include "climbing/drawn_site.hpp"
-#include "climbing/edge_loops.hpp"
-#include "climbing/halvings.hpp"
-#include "climbing/placed_vertices.hpp"
-#include "climbing/polygon.hpp"
-#include "climbing/polygons.hpp"
-#include "climbing/ruler.hpp"
-#include "climbing/triangle_list.hpp"
+#include "climbing/boxes/halvings.hpp"
+#include "climbing/error/ruler.hpp"
+#include "climbing/triangles/box_edges.hpp"
+#include "climbing/triangles/drawn_site.hpp"
+#include "climbing/triangles/edge_loops.hpp"
+#include "climbing/triangles/placed_vertices.hpp"
+#include "climbing/triangles/polygon.hpp"
+#include "climbing/triangles/polygons.hpp"
+#include "climbing/triangles/triangle_list.hpp"
+#include "climbing/types.hpp"
 
 namespace isocore::climbing {
 

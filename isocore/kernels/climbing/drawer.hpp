@@ -6,13 +6,13 @@
 #include <cstdint>
 #include <span>
 
-#include "climbing/bars.hpp"
-#include "climbing/block_rices.hpp"
-#include "climbing/climb.hpp"
+#include "climbing/boxes/bars.hpp"
+#include "climbing/boxes/block_rices.hpp"
+#include "climbing/boxes/halvings.hpp"
 #include "climbing/disks.hpp"
-#include "climbing/drawn_site.hpp"
-#include "climbing/halvings.hpp"
-#include "climbing/triangle_list.hpp"
+#include "climbing/triangles/drawn_site.hpp"
+#include "climbing/triangles/triangle_list.hpp"
+#include "climbing/types.hpp"
 #include "samples/sample_reader.hpp"
 #include "tables/cell_loops.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/signs.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::marching_cubes {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/signs.hpp"
 #include "samples/crossed_edges.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::marching_cubes {
 

@@ -10,11 +10,11 @@
 
 #include "common/gaps.hpp"
 #include "common/parallel.hpp"
-#include "common/sample_types.hpp"
-#include "common/signs.hpp"
 #include "marching_cubes/counting.hpp"
 #include "marching_cubes/drawing.hpp"
 #include "samples/sample_reader.hpp"
+#include "samples/sample_types.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::marching_cubes {
 namespace {

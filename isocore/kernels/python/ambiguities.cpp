@@ -1,9 +1,9 @@
 // ambiguities.cpp - ambiguities(samples, isovalue, below, threads), once per sample type.
 #include "ambiguities/ambiguities.hpp"
 
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {

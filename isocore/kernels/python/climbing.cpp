@@ -9,10 +9,10 @@
 #include <optional>
 
 #include "climbing/climb.hpp"
-#include "common/sample_ranges.hpp"
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_ranges.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {

@@ -1,9 +1,9 @@
 // marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
 #include "marching_cubes/marching_cubes.hpp"
 
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {

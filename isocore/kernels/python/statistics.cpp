@@ -1,9 +1,9 @@
 // statistics.cpp - extent and histogram for numpy: samples as a flat view, in whatever order they lie in memory.
 #include "statistics/statistics.hpp"
 
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {

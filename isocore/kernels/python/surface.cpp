@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <string>
 
-#include "common/sample_types.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "samples/sample_types.hpp"
 #include "surface/format.hpp"
 #include "surface/measure.hpp"
 #include "surface/normals.hpp"

@@ -3,8 +3,8 @@
 #include <type_traits>
 
 #include "common/crossing.hpp"
-#include "common/decider.hpp"
-#include "common/sample_types.hpp"
+#include "samples/decider.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore {
 namespace {

@@ -12,9 +12,9 @@
 
 #include "common/grid.hpp"
 #include "common/set_bits.hpp"
-#include "common/signs.hpp"
 #include "samples/crossed_edges.hpp"
 #include "samples/edge.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "common/sample_types.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore {
 namespace {

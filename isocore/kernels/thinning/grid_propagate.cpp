@@ -14,9 +14,9 @@
 
 #include "common/crossing.hpp"
 #include "common/cube.hpp"
-#include "common/decider.hpp"
 #include "common/mesh_cells.hpp"
 #include "common/parallel.hpp"
+#include "samples/decider.hpp"
 #include "tables/cell_loops.hpp"
 #include "thinning/grid_thinning.hpp"
 #include "thinning/padded_grid.hpp"

@@ -1,10 +1,10 @@
-#include "common/sample_ranges.hpp"
+#include "samples/sample_ranges.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "common/parallel.hpp"
-#include "common/sample_types.hpp"
+#include "samples/sample_types.hpp"
 
 namespace isocore {
 namespace {

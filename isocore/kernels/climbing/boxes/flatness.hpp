@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "climbing/cloud.hpp"
+#include "climbing/crossings/cloud.hpp"
 #include "climbing/high_rice.hpp"
 #include "climbing/vectors.hpp"
 #include "tables/rims.hpp"

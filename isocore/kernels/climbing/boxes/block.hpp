@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "climbing/dike.hpp"
-#include "common/signs.hpp"
+#include "climbing/boxes/dike.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::climbing {
 

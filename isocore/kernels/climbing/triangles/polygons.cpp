@@ -1,4 +1,4 @@
-#include "climbing/polygons.hpp"
+#include "climbing/triangles/polygons.hpp"
 
 #include <limits>
 #include <stdexcept>

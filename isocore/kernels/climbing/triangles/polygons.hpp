@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "climbing/loop_triangles.hpp"
+#include "climbing/triangles/loop_triangles.hpp"
 #include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
 

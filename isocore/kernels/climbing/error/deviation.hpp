@@ -6,16 +6,10 @@
 #include <array>
 #include <cstddef>
 
-#include "climbing/climb.hpp"
+#include "climbing/types.hpp"
 #include "common/lanes.hpp"
 
 namespace isocore::climbing {
-
-inline void add(Deviation& sum, const Deviation& other) {
-    sum.max = std::max(sum.max, other.max);
-    sum.sum += other.sum;
-    sum.squares += other.squares;
-}
 
 // Distances that are yet to be added up, lane by lane.
 class Tally {

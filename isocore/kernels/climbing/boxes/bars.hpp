@@ -8,10 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "climbing/climb.hpp"
-#include "climbing/deviation.hpp"
-#include "climbing/partition.hpp"
-#include "common/signs.hpp"
+#include "climbing/boxes/partition.hpp"
+#include "climbing/types.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::climbing {
 

@@ -1,6 +1,6 @@
 // Sections 3 to 5 of the paper (dikes, padis, highrices), turned over: from the block down instead of from the dikes
 // up.
-#include "climbing/partition.hpp"
+#include "climbing/boxes/partition.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,14 +9,14 @@
 #include <memory>
 #include <utility>
 
-#include "climbing/bar_shadow.hpp"
-#include "climbing/block.hpp"
-#include "climbing/cloud.hpp"
-#include "climbing/cuts.hpp"
-#include "climbing/flatness.hpp"
-#include "climbing/ligns.hpp"
-#include "climbing/rim.hpp"
-#include "climbing/survey.hpp"
+#include "climbing/boxes/bar_shadow.hpp"
+#include "climbing/boxes/block.hpp"
+#include "climbing/boxes/flatness.hpp"
+#include "climbing/boxes/survey.hpp"
+#include "climbing/crossings/cloud.hpp"
+#include "climbing/crossings/cuts.hpp"
+#include "climbing/crossings/ligns.hpp"
+#include "climbing/crossings/rim.hpp"
 #include "common/parallel.hpp"
 #include "tables/rims.hpp"
 
@@ -26,11 +26,11 @@ namespace {
 template <int N>
 class Partition {
   public:
-    Partition(const SignGrid& signs, Layout& layout, const Judge* judge)
+    Partition(const SignGrid& signs, Layout& layout, const Gatherer* gatherer)
         : signs_(signs),
           layout_(layout),
-          judge_(judge),
-          flat_(judge ? judge->max_error : 0),
+          gatherer_(gatherer),
+          flat_(gatherer ? gatherer->max_error : 0),
           site_(N),
           ligns_(N + 1),
           clouds_(N) {}
@@ -39,13 +39,13 @@ class Partition {
     void climb(const Dims& origin, BarBoxes& bar) {
         block_.load(signs_, origin);
         measure_dikes();
-        survey_.take(block_, !judge_);
+        survey_.take(block_, !gatherer_);
         if (bar.blocks++ == 0) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
         cuts_.clear();
         boxes_.clear();
         cells_ = {};
-        if (judge_) {
+        if (gatherer_) {
             for (auto* table : {&asked_, &passed_}) *table = {};
             gather();
         }
@@ -81,14 +81,14 @@ class Partition {
             crossings +=
                 static_cast<std::size_t>(std::popcount(site_.row(start.at(1), start.at(2)).crossed[start.axis()]));
         clouds_.begin(crossings);
-        judge_->gather(site_, clouds_, ligns_);
+        gatherer_->gather(site_, clouds_, ligns_);
         crossings_ = clouds_.finish();
     }
 
     // around: the crossings of the box, and perhaps others.
     int price(const Box& box, const Cloud& around) {
         const int price = survey_price(box);
-        return price == kAccepted && judge_ ? judged_price(box, around) : price;
+        return price == kAccepted && gatherer_ ? judged_price(box, around) : price;
     }
 
     // Of a box that may be a highrice otherwise.
@@ -137,7 +137,7 @@ class Partition {
         const std::size_t lign = Ligns::lign(kSamples, side.axis, ends[side.ends[0]], ends[side.ends[1]]);
         const int along = std::countr_zero(ligns_.crossed[lign] & ~std::uint64_t{0} << ends[2u * side.axis]);
         return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) *
-               judge_->scale[side.axis];
+               gatherer_->scale[side.axis];
     }
 
     void settle(const Box& box, int found, const Cloud& around, Halvings& halvings) {
@@ -154,7 +154,7 @@ class Partition {
     void split(const Box& box, const Cloud& around, Halvings& halvings) {
         const std::size_t top = clouds_.top();
         const Cloud here =
-            judge_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
+            gatherer_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
         const Choice choice = best_axis(box, here);
         const auto parts = halves(box, choice.axis);
         if (!is_cell(parts[0]))
@@ -195,7 +195,7 @@ class Partition {
         const auto best = [&] {
             return static_cast<std::size_t>(std::min(std::min(ranks[0], ranks[1]), ranks[2]) & 3);
         };
-        if (!judge_) {
+        if (!gatherer_) {
             if (Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook) {
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     if (!Dikes::is_unit(box[axis]))
@@ -204,7 +204,7 @@ class Partition {
             }
             return {best(), prices[best()]};
         }
-        // A judge can only raise prices, so no half need be brought before it until its axis is the best.
+        // A gatherer can only raise prices, so no half need be brought before it until its axis is the best.
         for (std::array<std::size_t, 3> judged{};;) {
             const std::size_t axis = best();
             if (judged[axis] == 2) return {axis, prices[axis]};
@@ -242,7 +242,7 @@ class Partition {
         for (std::size_t a = 0; a < 3; ++a) {
             if (measured_[a] == block_.cells[a]) continue;
             measured_[a] = block_.cells[a];
-            const float scale = judge_ ? judge_->scale[a] : 1;
+            const float scale = gatherer_ ? gatherer_->scale[a] : 1;
             for (Label label = 1; label < 2 * N; ++label) {
                 const int low = Dikes::start(label), high = std::min(Dikes::end(label), measured_[a]);
                 dikes_[a][label] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high),
@@ -269,7 +269,7 @@ class Partition {
 
     const SignGrid& signs_;
     Layout& layout_;
-    const Judge* judge_;
+    const Gatherer* gatherer_;
     Flatness flat_;
     std::array<int, 3> measured_{};  // cells along each axis
     std::array<std::array<Segment, 2 * N>, 3> dikes_;
@@ -286,10 +286,10 @@ class Partition {
 };
 
 template <int N>
-std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const Judge* judge, Layout& layout) {
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const Gatherer* gatherer, Layout& layout) {
     const auto blocks = [&](std::size_t axis) { return (signs.dims[axis] - 2) / N + 1; };
     std::vector<BarBoxes> bars(blocks(1) * blocks(2));
-    const auto make = [&] { return std::make_unique<Partition<N>>(signs, layout, judge); };
+    const auto make = [&] { return std::make_unique<Partition<N>>(signs, layout, gatherer); };
     parallel_for(threads, bars.size(), make, [&](const std::unique_ptr<Partition<N>>& partition, std::size_t n) {
         const std::size_t y = N * (n % blocks(1)), z = N * (n / blocks(1));
         const BarShadow shadow(signs, N, y, z);
@@ -308,21 +308,21 @@ std::vector<BarBoxes> partition_bars(const SignGrid& signs, int threads, const J
 
 }  // namespace
 
-std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Judge* judge,
+std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Gatherer* gatherer,
                                      Layout& layout) {
     switch (block_size) {
         case 1:
-            return partition_bars<1>(signs, threads, judge, layout);
+            return partition_bars<1>(signs, threads, gatherer, layout);
         case 2:
-            return partition_bars<2>(signs, threads, judge, layout);
+            return partition_bars<2>(signs, threads, gatherer, layout);
         case 4:
-            return partition_bars<4>(signs, threads, judge, layout);
+            return partition_bars<4>(signs, threads, gatherer, layout);
         case 8:
-            return partition_bars<8>(signs, threads, judge, layout);
+            return partition_bars<8>(signs, threads, gatherer, layout);
         case 16:
-            return partition_bars<16>(signs, threads, judge, layout);
+            return partition_bars<16>(signs, threads, gatherer, layout);
         default:
-            return partition_bars<32>(signs, threads, judge, layout);
+            return partition_bars<32>(signs, threads, gatherer, layout);
     }
 }
 

@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
-#include "climbing/drawn_site.hpp"
 #include "climbing/high_rice.hpp"
+#include "climbing/triangles/drawn_site.hpp"
 #include "common/array.hpp"
 #include "common/set_bits.hpp"
 

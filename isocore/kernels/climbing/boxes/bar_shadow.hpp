@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/bit_fields.hpp"
-#include "common/signs.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::climbing {
 

@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "climbing/bars.hpp"
-#include "climbing/halvings.hpp"
+#include "climbing/boxes/bars.hpp"
+#include "climbing/boxes/halvings.hpp"
+#include "climbing/crossings/rim.hpp"
+#include "climbing/crossings/site.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/rim.hpp"
-#include "climbing/site.hpp"
 #include "common/array.hpp"
 #include "tables/rims.hpp"
 

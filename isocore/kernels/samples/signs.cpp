@@ -1,5 +1,5 @@
 // signs.cpp - Classification at the speed of memory: compare 64 samples into 64 bytes, gather their top bits.
-#include "common/signs.hpp"
+#include "samples/signs.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -7,8 +7,8 @@
 
 #include "common/crossing.hpp"
 #include "common/parallel.hpp"
-#include "common/sample_ranges.hpp"
-#include "common/sample_types.hpp"
+#include "samples/sample_ranges.hpp"
+#include "samples/sample_types.hpp"
 
 #if defined(__AVX2__)
 #include <immintrin.h>

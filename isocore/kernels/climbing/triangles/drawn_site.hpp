@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "climbing/site.hpp"
+#include "climbing/crossings/site.hpp"
 
 namespace isocore::climbing {
 

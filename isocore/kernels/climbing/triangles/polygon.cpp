@@ -1,4 +1,4 @@
-#include "climbing/polygon.hpp"
+#include "climbing/triangles/polygon.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -5,9 +5,9 @@
 #include <bit>
 #include <cstdint>
 
+#include "climbing/crossings/layout.hpp"
+#include "climbing/crossings/site.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/layout.hpp"
-#include "climbing/site.hpp"
 #include "tables/rims.hpp"
 
 namespace isocore::climbing {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "climbing/loop_triangles.hpp"
+#include "climbing/triangles/loop_triangles.hpp"
 #include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
 

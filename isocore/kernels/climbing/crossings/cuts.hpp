@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "climbing/crossings/layout.hpp"
+#include "climbing/crossings/site.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/layout.hpp"
-#include "climbing/site.hpp"
 
 namespace isocore::climbing {
 

@@ -9,12 +9,12 @@
 #include <memory>
 #include <vector>
 
-#include "climbing/bars.hpp"
-#include "climbing/box_edges.hpp"
-#include "climbing/climb.hpp"
-#include "climbing/deviation.hpp"
-#include "climbing/facets.hpp"
-#include "climbing/spotter.hpp"
+#include "climbing/boxes/bars.hpp"
+#include "climbing/crossings/spotter.hpp"
+#include "climbing/error/deviation.hpp"
+#include "climbing/error/facets.hpp"
+#include "climbing/triangles/box_edges.hpp"
+#include "climbing/types.hpp"
 #include "climbing/vectors.hpp"
 
 namespace isocore::climbing {

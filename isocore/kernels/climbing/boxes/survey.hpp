@@ -10,8 +10,8 @@
 #include <array>
 #include <cstddef>
 
-#include "climbing/block.hpp"
-#include "climbing/dike.hpp"
+#include "climbing/boxes/block.hpp"
+#include "climbing/boxes/dike.hpp"
 #include "climbing/high_rice.hpp"
 #include "common/inlined.hpp"
 #include "tables/box_corners.hpp"

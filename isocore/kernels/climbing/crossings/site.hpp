@@ -9,11 +9,11 @@
 #include <cstdint>
 #include <span>
 
+#include "climbing/crossings/layout.hpp"
 #include "climbing/high_rice.hpp"
-#include "climbing/layout.hpp"
 #include "common/array.hpp"
-#include "common/signs.hpp"
 #include "samples/edge.hpp"
+#include "samples/signs.hpp"
 
 namespace isocore::climbing {
 

@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <span>
 
-#include "climbing/box_edges.hpp"
-#include "climbing/box_ends.hpp"
 #include "climbing/high_rice.hpp"
+#include "climbing/triangles/box_edges.hpp"
+#include "climbing/triangles/box_ends.hpp"
 #include "tables/rims.hpp"
 
 namespace isocore::climbing {

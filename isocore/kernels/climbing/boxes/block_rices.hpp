@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
-#include "climbing/halvings.hpp"
-#include "climbing/site.hpp"
+#include "climbing/boxes/halvings.hpp"
+#include "climbing/crossings/site.hpp"
 #include "common/array.hpp"
 
 namespace isocore::climbing {
