@@ -1,4 +1,4 @@
-"""What the compiled module offers, by hand; kernels/python/*.cpp is where it comes from."""
+"""What the compiled module offers, by hand; kernels/python/bind_*.cpp are where it comes from."""
 
 from typing import Any
 

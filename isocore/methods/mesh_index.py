@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 @dataclass(frozen=True, slots=True, eq=False)
 class IndexPart:
-    """The index of all cells of one kind; kernels/thinning/thinning.hpp says what a record holds.
+    """The index of all cells of one kind; kernels/thinning/mesh/thinning.hpp says what a record holds.
 
     records: (m, 14) int32 for tetrahedra, (m, 26) for hexahedra.
     skeleton: (s,) int32, cells; low, high: (s,) float64, low ascending: the isovalues a skeleton cell holds.

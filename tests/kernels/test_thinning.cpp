@@ -12,10 +12,10 @@
 #include "marching_cells/marching_cells.hpp"
 #include "marching_cubes/marching_cubes.hpp"
 #include "tables/mesh_cases.hpp"
-#include "thinning/grid_thinning.hpp"
+#include "thinning/grid/grid_thinning.hpp"
+#include "thinning/mesh/thinning.hpp"
 #include "thinning/range_lookup.hpp"
 #include "thinning/safe_rule.hpp"
-#include "thinning/thinning.hpp"
 
 namespace {
 

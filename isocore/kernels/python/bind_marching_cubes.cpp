@@ -1,4 +1,4 @@
-// marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
+// bind_marching_cubes.cpp - marching_cubes(samples, isovalue, below, capped, threads, trilinear), once per sample type.
 #include "marching_cubes/marching_cubes.hpp"
 
 #include "python/arrays.hpp"

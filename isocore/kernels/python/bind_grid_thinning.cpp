@@ -1,6 +1,6 @@
-// grid_thinning.cpp - thin_grid(samples, below, capped) and propagate_grid(samples, skeleton arrays..., isovalue, ...),
-// once per sample type.
-#include "thinning/grid_thinning.hpp"
+// bind_grid_thinning.cpp - thin_grid(samples, below, capped) and propagate_grid(samples, skeleton arrays..., isovalue,
+// ...), once per sample type.
+#include "thinning/grid/grid_thinning.hpp"
 
 #include <cstdint>
 #include <utility>

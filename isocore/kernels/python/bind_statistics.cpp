@@ -1,4 +1,4 @@
-// statistics.cpp - extent and histogram for numpy: samples as a flat view, in whatever order they lie in memory.
+// bind_statistics.cpp - extent and histogram for numpy: samples as a flat view, in whatever order they lie in memory.
 #include "statistics/statistics.hpp"
 
 #include "python/arrays.hpp"

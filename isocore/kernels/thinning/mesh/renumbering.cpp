@@ -1,5 +1,5 @@
 // renumbering.cpp - See renumbering.hpp. G. Morton, "A Computer Oriented Geodetic Data Base", IBM 1966.
-#include "thinning/renumbering.hpp"
+#include "thinning/mesh/renumbering.hpp"
 
 #include <algorithm>
 #include <array>

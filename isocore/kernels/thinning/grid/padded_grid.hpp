@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include "common/grid.hpp"
-#include "thinning/grid_thinning.hpp"
+#include "thinning/grid/grid_thinning.hpp"
 
 namespace isocore::thinning {
 

@@ -1,4 +1,4 @@
-// surface.cpp - Python's view of kernels/surface: measuring, placing, normals, and the bytes of mesh files.
+// bind_surface.cpp - Python's view of kernels/surface: measuring, placing, normals, and the bytes of mesh files.
 #include <nanobind/stl/string.h>
 
 #include <algorithm>

@@ -18,8 +18,8 @@
 #include "common/parallel.hpp"
 #include "samples/decider.hpp"
 #include "tables/cell_loops.hpp"
-#include "thinning/grid_thinning.hpp"
-#include "thinning/padded_grid.hpp"
+#include "thinning/grid/grid_thinning.hpp"
+#include "thinning/grid/padded_grid.hpp"
 #include "thinning/range_lookup.hpp"
 
 namespace isocore::thinning {

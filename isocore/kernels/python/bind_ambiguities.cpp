@@ -1,4 +1,4 @@
-// ambiguities.cpp - ambiguities(samples, isovalue, below, threads), once per sample type.
+// bind_ambiguities.cpp - ambiguities(samples, isovalue, below, threads), once per sample type.
 #include "ambiguities/ambiguities.hpp"
 
 #include "python/arrays.hpp"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/mesh_cells.hpp"
-#include "thinning/grid_thinning.hpp"
-#include "thinning/padded_grid.hpp"
+#include "thinning/grid/grid_thinning.hpp"
+#include "thinning/grid/padded_grid.hpp"
 #include "thinning/safe_rule.hpp"
 
 namespace isocore::thinning {

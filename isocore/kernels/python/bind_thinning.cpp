@@ -1,6 +1,6 @@
-// thinning.cpp - build_index(points, tets, hexes, values) and propagate(points, values, index arrays..., isovalue,
+// bind_thinning.cpp - build_index(points, tets, hexes, values) and propagate(points, values, index arrays..., isovalue,
 // threads, single).
-#include "thinning/thinning.hpp"
+#include "thinning/mesh/thinning.hpp"
 
 #include <cstdint>
 #include <utility>

@@ -1,4 +1,4 @@
-// rivals.cpp - extrema_graph(records, corners, faces, at_extremum) over the records of a thinning index.
+// bind_rivals.cpp - extrema_graph(records, corners, faces, at_extremum) over the records of a thinning index.
 #include "rivals/extrema_graph.hpp"
 
 #include <stdexcept>

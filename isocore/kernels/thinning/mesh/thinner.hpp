@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "common/array.hpp"
-#include "thinning/gluing.hpp"
+#include "thinning/mesh/gluing.hpp"
 
 namespace isocore::thinning {
 

@@ -4,7 +4,7 @@
 // The paper's rules for its classes C1 to C4 are replaced by one that is both safer and thinner (safe_rule.hpp;
 // README.md says where we depart). Every vertex and edge copy keeps the count of the remaining cells that touch it and
 // the XOR of their ids: when the count drops to one, the XOR is the survivor, whose boundary has just come free.
-#include "thinning/thinner.hpp"
+#include "thinning/mesh/thinner.hpp"
 
 #include <algorithm>
 #include <bit>

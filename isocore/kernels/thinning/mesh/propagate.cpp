@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/parallel.hpp"
-#include "thinning/thinning.hpp"
-#include "thinning/walk.hpp"
+#include "thinning/mesh/thinning.hpp"
+#include "thinning/mesh/walk.hpp"
 
 namespace isocore::thinning {
 namespace {

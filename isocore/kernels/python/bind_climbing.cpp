@@ -1,5 +1,5 @@
-// climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing, measured,
-// ranges) and sample_ranges(samples, threads), once per sample type.
+// bind_climbing.cpp - climb(samples, isovalue, below, capped, threads, block_size, max_error, in_world, spacing,
+// measured, ranges) and sample_ranges(samples, threads), once per sample type.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 

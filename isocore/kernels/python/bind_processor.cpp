@@ -1,4 +1,4 @@
-// processor.cpp - Which of the compiled modules this processor can run.
+// bind_processor.cpp - Which of the compiled modules this processor can run.
 #include "python/bindings.hpp"
 
 namespace isocore::python {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "thinning/renumbering.hpp"
-#include "thinning/thinner.hpp"
-#include "thinning/thinning.hpp"
+#include "thinning/mesh/renumbering.hpp"
+#include "thinning/mesh/thinner.hpp"
+#include "thinning/mesh/thinning.hpp"
 
 namespace isocore::thinning {
 namespace {

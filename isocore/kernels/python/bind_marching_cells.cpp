@@ -1,5 +1,5 @@
-// marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads, single), for float32 and float64
-// values.
+// bind_marching_cells.cpp - marching_cells(points, tets, hexes, values, isovalue, threads, single), for float32 and
+// float64 values.
 #include "marching_cells/marching_cells.hpp"
 
 #include "python/arrays.hpp"

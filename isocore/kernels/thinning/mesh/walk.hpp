@@ -17,9 +17,9 @@
 
 #include "common/parallel.hpp"
 #include "tables/mesh_cases.hpp"
+#include "thinning/mesh/shared_cells.hpp"
+#include "thinning/mesh/thinning.hpp"
 #include "thinning/range_lookup.hpp"
-#include "thinning/shared_cells.hpp"
-#include "thinning/thinning.hpp"
 
 #if defined(__GNUC__) || defined(__clang__)
 #define ISOCORE_PREFETCH(address) __builtin_prefetch(address)

@@ -1,6 +1,6 @@
 // gluing.cpp - Adjacency by a radix sort of faces, then vertex and edge copies by walking around them (thinning.md,
 // sections 2 and 5: the guarantee is proved for the mesh glued along faces).
-#include "thinning/gluing.hpp"
+#include "thinning/mesh/gluing.hpp"
 
 #include <algorithm>
 #include <bit>

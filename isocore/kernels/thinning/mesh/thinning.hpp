@@ -11,7 +11,7 @@
 
 #include "common/array.hpp"
 #include "common/mesh_field.hpp"
-#include "thinning/gluing.hpp"
+#include "thinning/mesh/gluing.hpp"
 
 namespace isocore::thinning {
 
