@@ -1,6 +1,7 @@
 // grid.hpp - A view of samples on a grid: i fastest, then j, then k.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -22,5 +23,13 @@ struct GridView {
     }
     std::size_t size() const { return dims[0] * dims[1] * dims[2]; }
 };
+
+// Are float32 coordinates in index space fine enough? Up to 8192 samples along every axis they are: float32 then has
+// steps of at most 2^-11, and a vertex keeps 2^-10 of an edge away from every sample (kClamp in crossing.hpp), so that
+// two vertices on one grid line stay apart. For longer volumes callers take float64.
+inline bool floats_suffice(const Dims& dims) {
+    constexpr std::size_t kLongest = 8192;
+    return *std::max_element(dims.begin(), dims.end()) <= kLongest;
+}
 
 }  // namespace isocore

@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -26,13 +25,6 @@ using Vector = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class T>
 GridView<T> grid_view(const VolumeArray<T>& samples) {
     return {samples.data(), {samples.shape(0), samples.shape(1), samples.shape(2)}};
-}
-
-// Do float32 coordinates keep two vertices of one grid line apart? Up to so many samples they do.
-template <class T>
-bool floats_suffice(const GridView<T>& samples) {
-    constexpr std::size_t kLongest = 8192;
-    return *std::max_element(samples.dims.begin(), samples.dims.end()) <= kLongest;
 }
 
 // Hand an Array over to numpy as (size / columns, columns), or one-dimensional when columns is 0. The GIL must be held.

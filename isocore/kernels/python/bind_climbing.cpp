@@ -58,7 +58,7 @@ void bind(nb::module_& module) {
             if (ranges && ranges->size() != range_count(grid_view(samples).dims))
                 throw nb::value_error("ranges of another volume");
             const Sample* given = ranges ? ranges->data() : nullptr;
-            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options, given)
+            return floats_suffice(grid_view(samples).dims) ? run<Sample, float>(samples, options, given)
                                                       : run<Sample, double>(samples, options, given);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false,

@@ -25,7 +25,7 @@ void bind(nb::module_& module) {
         "marching_cubes",
         [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, bool trilinear) {
             const marching_cubes::Options options{isovalue, below, capped, trilinear, threads};
-            return floats_suffice(grid_view(samples)) ? run<Sample, float>(samples, options)
+            return floats_suffice(grid_view(samples).dims) ? run<Sample, float>(samples, options)
                                                       : run<Sample, double>(samples, options);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false,

@@ -17,6 +17,7 @@
 #include "common/mesh_cells.hpp"
 #include "common/parallel.hpp"
 #include "samples/decider.hpp"
+#include "samples/sample_types.hpp"
 #include "tables/cell_loops.hpp"
 #include "thinning/grid/grid_thinning.hpp"
 #include "thinning/grid/padded_grid.hpp"
@@ -259,14 +260,7 @@ GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skelet
 #define ISOCORE_INSTANTIATE(Sample)                                                                                 \
     template GridMesh propagate_grid<Sample>(GridView<Sample>, const GridSkeletonView&, double, const GridOptions&, \
                                              int);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore::thinning

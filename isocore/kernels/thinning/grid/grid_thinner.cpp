@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/mesh_cells.hpp"
+#include "samples/sample_types.hpp"
 #include "thinning/grid/grid_thinning.hpp"
 #include "thinning/grid/padded_grid.hpp"
 #include "thinning/safe_rule.hpp"
@@ -231,14 +232,7 @@ GridSkeleton thin_grid(GridView<Sample> samples, const GridOptions& options) {
 }
 
 #define ISOCORE_INSTANTIATE(Sample) template GridSkeleton thin_grid<Sample>(GridView<Sample>, const GridOptions&);
-ISOCORE_INSTANTIATE(std::uint8_t)
-ISOCORE_INSTANTIATE(std::int8_t)
-ISOCORE_INSTANTIATE(std::uint16_t)
-ISOCORE_INSTANTIATE(std::int16_t)
-ISOCORE_INSTANTIATE(std::uint32_t)
-ISOCORE_INSTANTIATE(std::int32_t)
-ISOCORE_INSTANTIATE(float)
-ISOCORE_INSTANTIATE(double)
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 
 }  // namespace isocore::thinning
