@@ -1,6 +1,6 @@
 """What the compiled module offers, by hand; kernels/python/bind_*.cpp are where it comes from."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -9,13 +9,21 @@ _Int32 = npt.NDArray[np.int32]
 _Float32 = npt.NDArray[np.float32]
 _Float64 = npt.NDArray[np.float64]
 _Bytes = npt.NDArray[np.uint8]
-_Real = npt.NDArray[Any]  # float32 or float64
+_Real = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 _Samples = npt.NDArray[Any]  # (nx, ny, nz) in Fortran order, one of volume.SAMPLE_TYPES
 _Bounds = tuple[float, float, float, float, float, float]  # low x, y, z, then high
 
 def supports_v3() -> bool: ...
 
-# marching_cubes: (vertices in index space, triangles, ambiguous faces, ambiguous cells, tubes)
+# Whatever returns several things returns a named tuple. Vertices are (v, 3), triangles (t, 3).
+
+class MarchedVolume(NamedTuple):
+    vertices: _Real  # index space
+    triangles: _Int32
+    ambiguous_faces: int
+    ambiguous_cells: int
+    tubes: int
+
 def marching_cubes(
     samples: _Samples,
     isovalue: float,
@@ -23,9 +31,28 @@ def marching_cubes(
     capped: bool = False,
     threads: int = 1,
     trilinear: bool = False,
-) -> tuple[_Real, _Int32, int, int, int]: ...
+) -> MarchedVolume: ...
 
-# climbing: (vertices in index space, triangles, facts by name)
+class Deviation(NamedTuple):
+    max: float
+    mean: float
+    rms: float
+
+class ClimbingFacts(NamedTuple):
+    highrices: int
+    blocks: int
+    blocks_visited: int
+    ambiguous_faces: int
+    ambiguous_cells: int
+    split_again: int
+    error_voxels: Deviation  # in index space
+    error_world: Deviation  # with every index axis stretched by `spacing`
+
+class ClimbedVolume(NamedTuple):
+    vertices: _Real  # index space
+    triangles: _Int32
+    facts: ClimbingFacts
+
 def climb(
     samples: _Samples,
     isovalue: float,
@@ -38,22 +65,31 @@ def climb(
     spacing: tuple[float, float, float] = ...,
     measured: bool = True,
     ranges: npt.NDArray[Any] | None = None,
-) -> tuple[_Real, _Int32, dict[str, Any]]: ...
+) -> ClimbedVolume: ...
 
 # sample_ranges: the lowest and highest sample of blocks of 64 x 16 x 16, by turns, for climb's `ranges`
 def sample_ranges(samples: _Samples, threads: int = 1) -> npt.NDArray[Any]: ...
 
-# ambiguities: (places (n, 3) in index space, saddle distances (n,))
-def ambiguities(
-    samples: _Samples, isovalue: float, below: bool = False, threads: int = 1
-) -> tuple[_Float64, _Float64]: ...
+class AmbiguousFaces(NamedTuple):
+    places: _Float64  # (n, 3), index space: the saddle of each face
+    distances: _Float64  # (n,), of the saddle's value from the isovalue
+
+def ambiguities(samples: _Samples, isovalue: float, below: bool = False, threads: int = 1) -> AmbiguousFaces: ...
 
 # surface: vertices (v, 3), triangles (t, 3), normals (v, 3), affine (3, 4); `out` and `flip` write in place
-# measure: ((components, boundary edges, non-manifold edges, non-manifold vertices, misoriented edges, Euler
-# number, degenerate triangles), area, signed volume, bounds)
-def measure(
-    vertices: _Real, triangles: _Int32, threads: int = 1
-) -> tuple[tuple[int, int, int, int, int, int, int], float, float, _Bounds]: ...
+class Measured(NamedTuple):
+    components: int
+    boundary_edges: int
+    nonmanifold_edges: int
+    nonmanifold_vertices: int
+    misoriented_edges: int
+    euler: int
+    degenerate: int
+    area: float
+    volume: float  # signed; means something only when the surface is closed
+    bounds: _Bounds
+
+def measure(vertices: _Real, triangles: _Int32, threads: int = 1) -> Measured: ...
 def bounds(vertices: _Real) -> _Bounds: ...
 def place(vertices: _Real, affine: _Float64, out: _Real, threads: int = 1) -> None: ...
 def flip(triangles: _Int32, threads: int = 1) -> None: ...
@@ -67,7 +103,11 @@ def format_faces(triangles: _Int32, with_normals: bool, threads: int = 1) -> byt
 def stl_records(vertices: _Real, triangles: _Int32, threads: int = 1) -> _Bytes: ...
 def ply_faces(triangles: _Int32, threads: int = 1) -> _Bytes: ...
 
-# marching_cells: (vertices in the mesh's space, triangles, intersected cells); `single` makes vertices float32
+class MarchedMesh(NamedTuple):
+    vertices: _Real  # the mesh's space; float32 if `single`
+    triangles: _Int32
+    intersected: int  # cells
+
 def marching_cells(
     points: _Float64,
     tets: _Int32,
@@ -76,79 +116,96 @@ def marching_cells(
     isovalue: float,
     threads: int = 1,
     single: bool = False,
-) -> tuple[_Real, _Int32, int]: ...
+) -> MarchedMesh: ...
 
-# statistics: samples as a flat view in memory order; (minimum, maximum, non-finite) with minimum > maximum where no
-# sample is finite, and counts in equal bins from low to high
-def extent(samples: npt.NDArray[Any], threads: int) -> tuple[float, float, int]: ...
+# statistics: samples as a flat view in memory order
+class Extent(NamedTuple):
+    minimum: float  # above maximum where no sample is finite
+    maximum: float
+    nonfinite: int  # samples
+
+def extent(samples: npt.NDArray[Any], threads: int) -> Extent: ...
+
+# histogram: counts in equal bins from low to high
 def histogram(
     samples: npt.NDArray[Any], low: float, high: float, bins: int, threads: int
 ) -> npt.NDArray[np.uint64]: ...
 
-# thinning: records (m, 14) or (m, 26), skeleton (s,), low and high (s,); then as isocore.methods.mesh_index.IndexPart
-_Part = tuple[
-    _Int32, _Int32, _Float64, _Float64, int, tuple[int, ...], int, tuple[int, int, int], int, int
-]
+# thinning: as isocore.methods.mesh_index.IndexPart and MeshIndex explain them
+class IndexPart(NamedTuple):
+    records: _Int32
+    skeleton: _Int32
+    low: _Float64
+    high: _Float64
+    extrema: int
+    classes: tuple[int, ...]
+    crowded_faces: int
+    crowded_cells: tuple[int, int, int]
+    collapsed_cells: int
+    collapsed_cell: int
 
-# build_index: (tetrahedra, hexahedra, the mesh's id of every point of the index, edge ids)
-def build_index(
-    points: _Float64, tets: _Int32, hexes: _Int32, values: _Real
-) -> tuple[_Part, _Part, _Int32, int]: ...
+class BuiltIndex(NamedTuple):
+    tets: IndexPart
+    hexes: IndexPart
+    original: _Int32
+    edges: int
 
-# propagate: (vertices, triangles, seeds, visited cells); points and values as the index numbers them, `original` their
-# ids in the mesh; `vertex_of_edge` is scratch, one per edge id
-def propagate(
-    points: _Float64,
-    values: _Real,
-    tets: _Int32,
-    tet_skeleton: _Int32,
-    tet_low: _Float64,
-    tet_high: _Float64,
-    hexes: _Int32,
-    hex_skeleton: _Int32,
-    hex_low: _Float64,
-    hex_high: _Float64,
-    original: _Int32,
-    vertex_of_edge: _Int32,
-    isovalue: float,
-    threads: int = 1,
-    single: bool = False,
-) -> tuple[_Real, _Int32, int, int]: ...
+def build_index(points: _Float64, tets: _Int32, hexes: _Int32, values: _Real) -> BuiltIndex: ...
 
-# walk: the search of propagate alone: (tetrahedra, hexahedra, seeds)
-def walk(
-    points: _Float64,
-    values: _Real,
-    tets: _Int32,
-    tet_skeleton: _Int32,
-    tet_low: _Float64,
-    tet_high: _Float64,
-    hexes: _Int32,
-    hex_skeleton: _Int32,
-    hex_low: _Float64,
-    hex_high: _Float64,
-    original: _Int32,
-    vertex_of_edge: _Int32,
-    isovalue: float,
-) -> tuple[_Int32, _Int32, int]: ...
+class WalkedMesh(NamedTuple):
+    vertices: _Real  # the mesh's space; float32 if `single`
+    triangles: _Int32
+    seeds: int  # skeleton cells that the isosurface meets
+    visited: int  # all cells that it meets
 
-# thin_grid: (skeleton cells, low, high, extrema)
-def thin_grid(
-    samples: _Samples, below: bool = False, capped: bool = False
-) -> tuple[_Int32, _Float64, _Float64, int]: ...
+class VisitedCells(NamedTuple):
+    tets: _Int32  # in the index's numbers
+    hexes: _Int32
+    seeds: int
 
-# propagate_grid: (vertices in index space, triangles, seeds, visited cells, ambiguous faces, ambiguous cells)
-def propagate_grid(
-    samples: _Samples,
-    skeleton: _Int32,
-    low: _Float64,
-    high: _Float64,
-    place: _Int32,
-    isovalue: float,
-    below: bool = False,
-    capped: bool = False,
-    threads: int = 1,
-) -> tuple[_Float64, _Int32, int, int, int, int]: ...
+_PartArrays = tuple[_Int32, _Int32, _Float64, _Float64]  # records, skeleton, low, high
+
+class Index:
+    """An index and its mesh, checked once (ValueError), then ready for one isovalue after the other.
+
+    points (p, 3) and values (p,) as the index numbers them; original (p,): their ids in the mesh; edges: how many edge
+    ids the records name. Keeps the arrays alive and copies none. Calls from several threads take turns.
+    """
+
+    def __init__(
+        self,
+        points: _Float64,
+        values: _Real,
+        tets: _PartArrays,
+        hexes: _PartArrays,
+        original: _Int32,
+        edges: int,
+    ) -> None: ...
+    def propagate(self, isovalue: float, threads: int = 1, single: bool = False) -> WalkedMesh: ...
+    def walk(self, isovalue: float) -> VisitedCells: ...
+
+class WalkedVolume(NamedTuple):
+    vertices: _Real  # index space
+    triangles: _Int32
+    seeds: int
+    visited: int
+    ambiguous_faces: int
+    ambiguous_cells: int
+
+class GridIndex:
+    """A volume thinned once, then ready for one isovalue after the other; keeps the samples alive.
+
+    Calls from several threads take turns.
+    """
+
+    def __init__(self, samples: _Samples, below: bool = False, capped: bool = False) -> None: ...
+    @property
+    def cells(self) -> int: ...  # of the volume, those of the cap included
+    @property
+    def extrema(self) -> int: ...
+    @property
+    def skeleton_cells(self) -> int: ...
+    def propagate(self, isovalue: float, threads: int = 1) -> WalkedVolume: ...
 
 # extrema_graph: the cells that the rival of 1995 registers
 def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes) -> _Int32: ...

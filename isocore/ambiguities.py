@@ -33,8 +33,6 @@ class Ambiguities:
 
 def find_ambiguities(volume: Volume, isovalue: float, *, threads: int = 1) -> Ambiguities:
     """The ambiguous faces of the volume's own cells; capping adds none."""
-    places, distances = _kernels.ambiguities(
-        volume.samples, volume.stored_isovalue(isovalue), volume.inside_is_below, threads
-    )
-    points = places @ volume.affine[:3, :3].T + volume.affine[:3, 3]
-    return Ambiguities(points, distances * abs(volume.slope), volume.space, volume.unit)
+    faces = _kernels.ambiguities(volume.samples, volume.stored_isovalue(isovalue), volume.inside_is_below, threads)
+    points = faces.places @ volume.affine[:3, :3].T + volume.affine[:3, 3]
+    return Ambiguities(points, faces.distances * abs(volume.slope), volume.space, volume.unit)

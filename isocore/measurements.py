@@ -50,23 +50,22 @@ def measure(surface: Surface, threads: int = 1) -> Measurements:
 
     Raises ValueError if a triangle names a vertex that does not exist.
     """
-    counts, area, volume, box = _kernels.measure(surface.vertices, surface.triangles, threads)
-    components, boundary, nonmanifold, nonmanifold_vertices, misoriented, euler, degenerate = counts
-    watertight = boundary == nonmanifold == misoriented == 0
+    measured = _kernels.measure(surface.vertices, surface.triangles, threads)
+    watertight = measured.boundary_edges == measured.nonmanifold_edges == measured.misoriented_edges == 0
     return Measurements(
         triangles=len(surface.triangles),
         vertices=len(surface.vertices),
-        components=components,
-        boundary_edges=boundary,
-        nonmanifold_edges=nonmanifold,
-        nonmanifold_vertices=nonmanifold_vertices,
-        misoriented_edges=misoriented,
-        euler=euler,
+        components=measured.components,
+        boundary_edges=measured.boundary_edges,
+        nonmanifold_edges=measured.nonmanifold_edges,
+        nonmanifold_vertices=measured.nonmanifold_vertices,
+        misoriented_edges=measured.misoriented_edges,
+        euler=measured.euler,
         watertight=watertight,
-        manifold=nonmanifold == nonmanifold_vertices == 0,
-        area=area,
-        volume=volume if watertight else None,
-        bounds=(box[:3], box[3:]) if len(surface.vertices) else None,
-        degenerate=degenerate,
+        manifold=measured.nonmanifold_edges == measured.nonmanifold_vertices == 0,
+        area=measured.area,
+        volume=measured.volume if watertight else None,
+        bounds=(measured.bounds[:3], measured.bounds[3:]) if len(surface.vertices) else None,
+        degenerate=measured.degenerate,
         unit=surface.unit,
     )

@@ -47,12 +47,12 @@ def compare(
         broken.append("a vertex is not marching cubes'")
     if len(np.unique(triangles)) != len(vertices):
         broken.append("a vertex is not used")
-    if (facts["ambiguous_faces"], facts["ambiguous_cells"]) != (faces, cells):
+    if (facts.ambiguous_faces, facts.ambiguous_cells) != (faces, cells):
         broken.append("another number of ambiguous faces or cells")
     if len(triangles) > len(reference_triangles):
         broken.append("more triangles than marching cubes")
-    if facts["error_voxels"][0] > max_error:
-        broken.append(f"an error of {facts['error_voxels'][0]}")
+    if facts.error_voxels.max > max_error:
+        broken.append(f"an error of {facts.error_voxels.max}")
     return broken
 
 

@@ -13,7 +13,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError
 from isocore.extraction import Options
 from isocore.methods.index_file import index_path, load_index, save_index
-from isocore.methods.thinning import Walker, build_index, prepare_thinning
+from isocore.methods.thinning import build_index, prepare_thinning, ready_index
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def test_it_lies_beside_the_mesh() -> None:
 
 def test_a_loaded_index_walks_as_a_built_one(path: Path, mesh: CellMesh) -> None:
     """Same bytes of vertices and triangles, same counts."""
-    built, loaded = Walker(mesh, build_index(mesh)), Walker(mesh, load_index(path, mesh))
+    built, loaded = ready_index(mesh, build_index(mesh)), ready_index(mesh, load_index(path, mesh))
     for isovalue in meshes.isovalues(mesh, 5):
         one, other = built.propagate(isovalue), loaded.propagate(isovalue)
         assert all(np.array_equal(a, b) for a, b in zip(one[:2], other[:2], strict=True))

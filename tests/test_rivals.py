@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from isocore.benches.rivals import RIVALS, Cells, Rival
 from isocore.benches.thinning import cells_of, extrema_graph, mesh_bench
-from isocore.methods.thinning import Walker, build_index
+from isocore.methods.thinning import build_index, ready_index
 
 EACH = pytest.mark.parametrize("rival", RIVALS, ids=lambda rival: rival.name)
 
@@ -43,7 +43,7 @@ def test_walks_find_what_the_full_scan_finds(hexes: bool) -> None:
     for isovalue in meshes.isovalues(mesh, 20):
         met, _ = scan.candidates(isovalue)
         for some in (index, graph):
-            visited = Walker(mesh, some).walk(isovalue)[1 if hexes else 0]
+            visited = ready_index(mesh, some).walk(isovalue)[1 if hexes else 0]
             assert np.array_equal(np.sort(visited), met)
 
 

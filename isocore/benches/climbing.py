@@ -84,13 +84,13 @@ def volume_bench(
     stored, below = volume.stored_isovalue(isovalue), volume.inside_is_below
 
     def march() -> int:
-        return len(_kernels.marching_cubes(volume.samples, stored, below, False, threads)[1])
+        return len(_kernels.marching_cubes(volume.samples, stored, below, False, threads).triangles)
 
     def climb(size: int, bound: Bound) -> tuple[int, Deviation]:
-        _, triangles, facts = _kernels.climb(
+        climbed = _kernels.climb(
             volume.samples, stored, below, False, threads, size, bound.distance, bound.in_world, volume.spacing
         )
-        return len(triangles), facts["error_voxels"]
+        return len(climbed.triangles), climbed.facts.error_voxels
 
     mc_seconds, mc_triangles = _median_of(march, repeats)
     if mc_triangles == 0:

@@ -8,10 +8,10 @@ from time import perf_counter
 import numpy as np
 import numpy.typing as npt
 
+from isocore import _kernels
 from isocore.benches.rivals import RIVALS, Cells
 from isocore.benches.thinning import Table
 from isocore.errors import FieldError
-from isocore.methods.grid_thinning import GridWalker
 from isocore.volume import Volume
 
 _COLUMNS = ("method", "registered", "visited", "intersected", "visited / intersected", "build s", "search s")
@@ -38,13 +38,12 @@ def grid_bench(volume: Volume, *, isovalues: int = 20, threads: int = 1) -> list
         seconds = (built - start, perf_counter() - built)
         rows.append(_row(rival.name, search.registered, visited, found, seconds))
     start = perf_counter()
-    walker = GridWalker(volume, capped=False)
+    index = _kernels.GridIndex(volume.samples, volume.inside_is_below)
     built = perf_counter()
     sign = -1 if volume.inside_is_below else 1
-    facts = [walker.propagate(sign * height, threads)[2]["search"] for height in asked]
-    visited = sum(fact["visited"] for fact in facts)
+    visited = sum(index.propagate(sign * height, threads).visited for height in asked)
     seconds = (built - start, perf_counter() - built)
-    rows.append(_row("volume thinning, drawn", facts[0]["skeleton"], visited, visited, seconds))
+    rows.append(_row("volume thinning, drawn", index.skeleton_cells, visited, visited, seconds))
     return [Table(f"{len(cells.low):,} cells, {isovalues} isovalues", _COLUMNS, tuple(rows))]
 
 

@@ -15,7 +15,7 @@ from isocore.benches.rivals import RIVALS, Cells
 from isocore.cell_mesh import CellMesh
 from isocore.errors import FieldError
 from isocore.methods.mesh_index import IndexPart, MeshIndex
-from isocore.methods.thinning import Walker, build_index
+from isocore.methods.thinning import build_index, ready_index
 
 T = TypeVar("T")
 
@@ -148,14 +148,14 @@ def _measure_walks(
         ("extrema graph", graph, seconds_graph),
         ("volume thinning", index, seconds_thinning),
     ):
-        walker = Walker(mesh, some)
+        ready = ready_index(mesh, some)
         seconds_search = seconds_total = 0.0
         found = 0
         for isovalue in isovalues:
-            seconds, (tets, hexes, _) = _timed(walker.walk, isovalue)
+            seconds, (tets, hexes, _) = _timed(ready.walk, isovalue)
             seconds_search += seconds
             found += len(tets) + len(hexes)
-            seconds_total += _timed(walker.propagate, isovalue, threads)[0]
+            seconds_total += _timed(ready.propagate, isovalue, threads)[0]
         measured.append(Measured(name, some.skeleton_cells, found, found, seconds_build, seconds_search, seconds_total))
     return measured
 

@@ -49,7 +49,7 @@ def prepare_climbing(volume: Volume, options: Options) -> Extract:
     ranges = _kernels.sample_ranges(volume.samples, options.threads) if options.isovalues > 1 else None
 
     def extract(isovalue: float) -> Extraction:
-        vertices, triangles, facts = _kernels.climb(
+        climbed = _kernels.climb(
             volume.samples,
             volume.stored_isovalue(isovalue),
             volume.inside_is_below,
@@ -61,8 +61,8 @@ def prepare_climbing(volume: Volume, options: Options) -> Extract:
             volume.spacing,
             ranges=ranges,
         )
-        surface = placed_surface(volume, vertices, triangles, options)
-        return Extraction(surface, climbing_facts(facts, bound, volume.unit))
+        surface = placed_surface(volume, climbed.vertices, climbed.triangles, options)
+        return Extraction(surface, climbing_facts(climbed.facts, bound, volume.unit))
 
     return extract
 
@@ -119,19 +119,18 @@ def bound_for(volume: Volume, text: str | None) -> Bound:
     return Bound(distance / stretch, True, said)
 
 
-def climbing_facts(facts: dict[str, Any], bound: Bound, unit: str) -> dict[str, Any]:
+def climbing_facts(facts: _kernels.ClimbingFacts, bound: Bound, unit: str) -> dict[str, Any]:
     """The kernel's facts by the report's keys."""
-    names = ("max", "mean", "rms")
-    error: dict[str, Any] = dict(zip(names, facts["error_voxels"], strict=True))
-    error |= {f"{name}_world": value for name, value in zip(names, facts["error_world"], strict=True)}
+    error: dict[str, Any] = facts.error_voxels._asdict()
+    error |= {f"{name}_world": value for name, value in facts.error_world._asdict().items()}
     return {
         "error": error | {"unit": unit, "bound": bound.text},
-        "ambiguous": {"faces": facts["ambiguous_faces"], "cells": facts["ambiguous_cells"]},
+        "ambiguous": {"faces": facts.ambiguous_faces, "cells": facts.ambiguous_cells},
         "climbing": {
-            "highrices": facts["highrices"],
-            "split_again": facts["split_again"],
-            "blocks": facts["blocks"],
-            "blocks_visited": facts["blocks_visited"],
-            "blocks_skipped": facts["blocks"] - facts["blocks_visited"],
+            "highrices": facts.highrices,
+            "split_again": facts.split_again,
+            "blocks": facts.blocks,
+            "blocks_visited": facts.blocks_visited,
+            "blocks_skipped": facts.blocks - facts.blocks_visited,
         },
     }

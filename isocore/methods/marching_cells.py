@@ -27,11 +27,11 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     warnings, single = mesh_warnings(options), single_precision(mesh)
 
     def extract(isovalue: float) -> Extraction:
-        vertices, triangles, intersected = _kernels.marching_cells(
+        marched = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single
         )
-        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
-        facts = {"search": {"cells": mesh.cells, "visited": mesh.cells, "intersected": intersected}}
+        surface = mesh_surface(mesh, marched.vertices, marched.triangles, normals=options.normals)
+        facts = {"search": {"cells": mesh.cells, "visited": mesh.cells, "intersected": marched.intersected}}
         return Extraction(surface, facts, warnings)
 
     return extract

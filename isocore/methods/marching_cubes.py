@@ -34,11 +34,13 @@ def prepare_marching_cubes(field: Field, options: Options) -> Extract:
 
     def extract(isovalue: float) -> Extraction:
         stored = volume.stored_isovalue(isovalue)
-        vertices, triangles, faces, cells, tubes = _kernels.marching_cubes(
+        marched = _kernels.marching_cubes(
             volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
         )
-        surface = placed_surface(volume, vertices, triangles, options)
-        ambiguous = {"faces": faces, "cells": cells} | ({"tubes": tubes} if trilinear else {})
+        surface = placed_surface(volume, marched.vertices, marched.triangles, options)
+        ambiguous = {"faces": marched.ambiguous_faces, "cells": marched.ambiguous_cells}
+        if trilinear:
+            ambiguous["tubes"] = marched.tubes
         return Extraction(surface, {"ambiguous": ambiguous})
 
     return extract

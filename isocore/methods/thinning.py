@@ -7,29 +7,22 @@ says where it departs.
 
 from __future__ import annotations
 
-from threading import Lock
-from typing import Any, TypeAlias, cast
-
-import numpy as np
-import numpy.typing as npt
+from pathlib import Path
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.errors import IsocoreError
+from isocore.errors import InputError, IsocoreError
 from isocore.extraction import Extract, Extraction, Field, Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
-#: Vertices (v, 3), triangles (t, 3), seeds, visited cells.
-Walked: TypeAlias = tuple[npt.NDArray[Any], npt.NDArray[np.int32], int, int]
-
 
 def build_index(mesh: CellMesh) -> MeshIndex:
     """Thin the mesh; linear in its cells."""
-    tets, hexes, original, edges = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
-    return MeshIndex(IndexPart(*tets), IndexPart(*hexes), original, edges)
+    built = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
+    return MeshIndex(IndexPart(*built.tets), IndexPart(*built.hexes), built.original, built.edges)
 
 
 def prepare_thinning(field: Field, options: Options) -> Extract:
@@ -39,26 +32,27 @@ def prepare_thinning(field: Field, options: Options) -> Extract:
 
 def _prepare_mesh(mesh: CellMesh, options: Options) -> Extract:
     """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
-    index, warnings = _index_of(mesh, options)
+    index, ready, warnings = _index_of(mesh, options)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
-    walker, single = Walker(mesh, index), single_precision(mesh)
+    single = single_precision(mesh)
     known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
-        vertices, triangles, seeds, visited = walker.propagate(isovalue, options.threads, single=single)
-        surface = mesh_surface(mesh, vertices, triangles, normals=options.normals)
-        search = {**known, "seeds": seeds, "visited": visited, "intersected": visited}
+        walked = ready.propagate(isovalue, options.threads, single=single)
+        surface = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
+        search = {**known, "seeds": walked.seeds, "visited": walked.visited, "intersected": walked.visited}
         return Extraction(surface, {"search": search}, warnings)
 
     return extract
 
 
-def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, tuple[str, ...]]:
+def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, _kernels.Index, tuple[str, ...]]:
     """The index beside the mesh if it matches, else a new one; and what to tell the user about that choice."""
     warnings = []
     if options.index is not None:
         try:
-            return load_index(options.index, mesh), ()
+            index = load_index(options.index, mesh)
+            return index, _checked(options.index, mesh, index), ()
         except IsocoreError as error:
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh)
@@ -70,7 +64,15 @@ def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, tuple[str, .
             f"{share:.0f} % of the points are extrema, so the field is noise to thinning and its skeleton holds "
             f"{index.skeleton_cells:,} of {mesh.cells:,} cells: -b mc may be faster"
         )
-    return index, tuple(warnings)
+    return index, ready_index(mesh, index), tuple(warnings)
+
+
+def _checked(path: Path, mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
+    """A loaded index, ready. Raises InputError where it names what is not there, whatever its checksum says."""
+    try:
+        return ready_index(mesh, index)
+    except ValueError as error:
+        raise InputError(f"{path}: is damaged ({error}); write it again with `isocore index`") from error
 
 
 def _oddities(index: MeshIndex) -> tuple[str, ...]:
@@ -91,24 +93,18 @@ def _oddities(index: MeshIndex) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-class Walker:
-    """A mesh and its index, ready to walk; one call at a time, since calls number their vertices in the same place."""
+def ready_index(mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
+    """The mesh and its index as the kernel takes them: checked here once, then ready for any isovalue.
 
-    def __init__(self, mesh: CellMesh, index: MeshIndex) -> None:
-        self._arrays: list[Any] = [mesh.points[index.original], mesh.values[index.original]]
-        for part in index.parts:
-            self._arrays += [part.records, part.skeleton, part.low, part.high]
-        self._arrays += [index.original, np.zeros(index.edges, np.int32)]
-        self._one_at_a_time = Lock()
-
-    def propagate(self, isovalue: float, threads: int = 1, *, single: bool = False) -> Walked:
-        """The isosurface, as a full scan finds it; vertices in float32 (single) or float64."""
-        kernel: Any = _kernels.propagate
-        with self._one_at_a_time:
-            return cast(Walked, kernel(*self._arrays, isovalue, threads, single))
-
-    def walk(self, isovalue: float) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], int]:
-        """The search alone: tetrahedra and hexahedra visited, in the index's numbers, and seeds."""
-        kernel: Any = _kernels.walk
-        with self._one_at_a_time:
-            return cast("tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], int]", kernel(*self._arrays, isovalue))
+    `propagate` draws the isosurface as a full scan finds it; `walk` is its search alone, in the index's numbers.
+    Raises ValueError if the index names what is not there.
+    """
+    tets, hexes = ((part.records, part.skeleton, part.low, part.high) for part in index.parts)
+    return _kernels.Index(
+        points=mesh.points[index.original],
+        values=mesh.values[index.original],
+        tets=tets,
+        hexes=hexes,
+        original=index.original,
+        edges=index.edges,
+    )

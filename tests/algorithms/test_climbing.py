@@ -81,7 +81,7 @@ def test_boxes_and_vertices_are_those_of_the_slow_oracle(samples: np.ndarray, si
     """As many boxes, and the same crossed grid edges, as counting crossings one by one gives."""
     vertices, _, facts = _kernels.climb(np.asfortranarray(samples), isovalue, block_size=size)
     oracle = Oracle(samples >= isovalue, size)
-    assert facts["highrices"] == len(oracle.boxes)
+    assert facts.highrices == len(oracle.boxes)
     axes = (vertices != np.floor(vertices)).argmax(axis=1)
     found = {(int(axis), *map(int, np.floor(place))) for axis, place in zip(axes, vertices, strict=True)}
     assert found == oracle.vertices()
@@ -102,7 +102,7 @@ def test_the_bounded_knot_takes_no_more_triangles_than_the_prototype(error: floa
     """On the knot before rounding, whose steps would be errors of their own."""
     _, triangles, facts = _kernels.climb(knot(128, truncated=False), 199.5, threads=2, max_error=error)
     assert len(triangles) <= most
-    assert facts["error_voxels"][0] <= error
+    assert facts.error_voxels.max <= error
 
 
 @pytest.mark.parametrize(

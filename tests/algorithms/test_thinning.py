@@ -11,7 +11,7 @@ from mesh_oracles import Glued, triangle_set
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.extraction import Options
-from isocore.methods.thinning import Walker, build_index, prepare_thinning
+from isocore.methods.thinning import build_index, prepare_thinning, ready_index
 
 KINDS = pytest.mark.parametrize("hexes", [False, True], ids=["tets", "hexes"])
 EACH_BODY = pytest.mark.parametrize("body", meshes.BODIES)
@@ -34,9 +34,9 @@ def skeleton_of(mesh: CellMesh) -> list[int]:
 
 
 def assert_same_as_full_scan(mesh: CellMesh, limit: int = 12) -> None:
-    walker = Walker(mesh, build_index(mesh))
+    ready = ready_index(mesh, build_index(mesh))
     for isovalue in meshes.isovalues(mesh, limit):
-        vertices, triangles, seeds, visited = walker.propagate(isovalue)
+        vertices, triangles, seeds, visited = ready.propagate(isovalue)
         scanned = _kernels.marching_cells(mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue)
         assert visited == scanned[2]
         assert (seeds > 0) == (visited > 0)
@@ -156,11 +156,11 @@ def test_the_number_of_threads_does_not_change_a_byte() -> None:
     mesh = meshes.mesh_of(np.ones((20, 20, 20), bool))
     mesh = meshes.with_values(mesh, np.sin(mesh.points).sum(axis=1))
     index = build_index(mesh)
-    walker = Walker(mesh, index)
-    first = Walker(mesh, index).propagate(0.3)
+    ready = ready_index(mesh, index)
+    first = ready_index(mesh, index).propagate(0.3)
     for threads in (1, 2, 4):
-        walker.propagate(-0.2, threads)
-        again = walker.propagate(0.3, threads)
+        ready.propagate(-0.2, threads)
+        again = ready.propagate(0.3, threads)
         assert all(np.array_equal(a, b) for a, b in zip(again[:2], first[:2], strict=True))
 
 

@@ -29,20 +29,20 @@ from mesh_oracles import triangle_set
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.methods.thinning import Walker, build_index
+from isocore.methods.thinning import build_index, ready_index
 from isocore.readers.cell_splitting import split_cells
 
 REAL = Path(__file__).parents[3] / "shared" / "data" / "meshes"
 
 
 def components(vertices: np.ndarray, triangles: np.ndarray) -> int:
-    return _kernels.measure(vertices, triangles)[0][0]
+    return _kernels.measure(vertices, triangles).components
 
 
 def compare(mesh: CellMesh, limit: int, count: Tally) -> None:
-    walker = Walker(mesh, build_index(mesh))
+    ready = ready_index(mesh, build_index(mesh))
     for isovalue in meshes.isovalues(mesh, limit):
-        vertices, triangles, _, visited = walker.propagate(isovalue)
+        vertices, triangles, _, visited = ready.propagate(isovalue)
         all_vertices, all_triangles, intersected = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue
         )

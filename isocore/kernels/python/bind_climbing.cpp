@@ -11,55 +11,60 @@
 #include "climbing/climb.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
 #include "samples/sample_ranges.hpp"
 #include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {
 
-nb::tuple error_tuple(const climbing::Deviation& deviation, std::size_t crossings) {
-    const double count = crossings ? static_cast<double>(crossings) : 1;
-    return nb::make_tuple(deviation.max, deviation.sum / count, std::sqrt(deviation.squares / count));
-}
+// The named tuples that a climb returns.
+struct Results {
+    NamedTuple climbed, facts, deviation;
 
-nb::dict facts_dict(const climbing::Facts& facts) {
-    nb::dict out;
-    out["highrices"] = facts.highrices;
-    out["blocks"] = facts.blocks;
-    out["blocks_visited"] = facts.blocks_visited;
-    out["ambiguous_faces"] = facts.ambiguous_faces;
-    out["ambiguous_cells"] = facts.ambiguous_cells;
-    out["split_again"] = facts.split_again;
-    out["error_voxels"] = error_tuple(facts.in_voxels, facts.crossings);
-    out["error_world"] = error_tuple(facts.in_world, facts.crossings);
-    return out;
-}
+    explicit Results(nb::module_& module)
+        : climbed(module, "ClimbedVolume", {"vertices", "triangles", "facts"}),
+          facts(module, "ClimbingFacts",
+                {"highrices", "blocks", "blocks_visited", "ambiguous_faces", "ambiguous_cells", "split_again",
+                 "error_voxels", "error_world"}),
+          deviation(module, "Deviation", {"max", "mean", "rms"}) {}
+
+    nb::object of(const climbing::Deviation& found, std::size_t crossings) const {
+        const double count = crossings ? static_cast<double>(crossings) : 1;
+        return deviation(found.max, found.sum / count, std::sqrt(found.squares / count));
+    }
+    nb::object of(const climbing::Facts& found) const {
+        return facts(found.highrices, found.blocks, found.blocks_visited, found.ambiguous_faces, found.ambiguous_cells,
+                     found.split_again, of(found.in_voxels, found.crossings), of(found.in_world, found.crossings));
+    }
+};
 
 template <class Sample, class Coordinate>
-nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& options, const Sample* ranges) {
+nb::object run(const VolumeArray<Sample>& samples, const climbing::Options& options, const Sample* ranges,
+               const Results& results) {
     climbing::Mesh<Coordinate> mesh;
     {
         const nb::gil_scoped_release unlocked;
         mesh = climbing::climb<Sample, Coordinate>(grid_view(samples), options, ranges);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
-                          facts_dict(mesh.facts));
+    return results.climbed(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
+                           results.of(mesh.facts));
 }
 
 template <class Sample>
-void bind(nb::module_& module) {
+void bind(nb::module_& module, const Results& results) {
     module.def(
         "climb",
-        [](VolumeArray<Sample> samples, double isovalue, bool below, bool capped, int threads, int block_size,
-           double max_error, bool in_world, std::array<double, 3> spacing, bool measured,
-           std::optional<Vector<Sample>> ranges) {
+        [=](const VolumeArray<Sample>& samples, double isovalue, bool below, bool capped, int threads, int block_size,
+            double max_error, bool in_world, const std::array<double, 3>& spacing, bool measured,
+            const std::optional<Vector<Sample>>& ranges) {
             const climbing::Options options{isovalue,  below,    capped,  threads, block_size,
                                             max_error, in_world, spacing, measured};
             if (ranges && ranges->size() != range_count(grid_view(samples).dims))
                 throw nb::value_error("ranges of another volume");
             const Sample* given = ranges ? ranges->data() : nullptr;
-            return floats_suffice(grid_view(samples).dims) ? run<Sample, float>(samples, options, given)
-                                                      : run<Sample, double>(samples, options, given);
+            return floats_suffice(grid_view(samples).dims) ? run<Sample, float>(samples, options, given, results)
+                                                           : run<Sample, double>(samples, options, given, results);
         },
         nb::arg("samples").noconvert(), nb::arg("isovalue"), nb::arg("below") = false, nb::arg("capped") = false,
         nb::arg("threads") = 1, nb::arg("block_size") = 16,
@@ -68,7 +73,7 @@ void bind(nb::module_& module) {
         nb::arg("ranges").noconvert() = nb::none());
     module.def(
         "sample_ranges",
-        [](VolumeArray<Sample> samples, int threads) {
+        [](const VolumeArray<Sample>& samples, int threads) {
             Array<Sample> ranges;
             {
                 const nb::gil_scoped_release unlocked;
@@ -82,7 +87,8 @@ void bind(nb::module_& module) {
 }  // namespace
 
 void bind_climbing(nb::module_& module) {
-    for_each_sample_type([&]<class Sample>() { bind<Sample>(module); });
+    const Results results(module);
+    for_each_sample_type([&]<class Sample>() { bind<Sample>(module, results); });
 }
 
 }  // namespace isocore::python

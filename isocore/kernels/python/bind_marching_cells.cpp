@@ -4,42 +4,44 @@
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
 
 namespace isocore::python {
 namespace {
 
 template <class Coordinate, class Value>
-nb::object march_to(const mesh::Field<Value>& field, const marching_cells::Cells& cells, double isovalue, int threads) {
+nb::object march_to(const mesh::Field<Value>& field, const marching_cells::Cells& cells, double isovalue, int threads,
+                    const NamedTuple& marched_mesh) {
     marching_cells::Mesh<Coordinate> mesh;
     {
         const nb::gil_scoped_release unlocked;
         mesh = marching_cells::march<Coordinate>(field, cells, isovalue, threads);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
-                          mesh.intersected);
+    return marched_mesh(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3),
+                        mesh.intersected);
 }
 
 template <class Value>
-nb::object march(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
-                 const Vector<Value>& values, double isovalue, int threads, bool single) {
-    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
-    const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
-    return single ? march_to<float>(field, cells, isovalue, threads)
-                  : march_to<double>(field, cells, isovalue, threads);
-}
-
-template <class Value>
-void bind(nb::module_& module) {
-    module.def("marching_cells", &march<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(),
-               nb::arg("hexes").noconvert(), nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1,
-               nb::arg("single") = false);
+void bind(nb::module_& module, const NamedTuple& marched_mesh) {
+    module.def(
+        "marching_cells",
+        [=](const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
+            const Vector<Value>& values, double isovalue, int threads, bool single) {
+            const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
+            const marching_cells::Cells cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
+            return single ? march_to<float>(field, cells, isovalue, threads, marched_mesh)
+                          : march_to<double>(field, cells, isovalue, threads, marched_mesh);
+        },
+        nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
+        nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("threads") = 1, nb::arg("single") = false);
 }
 
 }  // namespace
 
 void bind_marching_cells(nb::module_& module) {
-    bind<float>(module);
-    bind<double>(module);
+    const NamedTuple marched_mesh(module, "MarchedMesh", {"vertices", "triangles", "intersected"});
+    bind<float>(module, marched_mesh);
+    bind<double>(module, marched_mesh);
 }
 
 }  // namespace isocore::python

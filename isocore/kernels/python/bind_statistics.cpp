@@ -3,27 +3,28 @@
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
 #include "samples/sample_types.hpp"
 
 namespace isocore::python {
 namespace {
 
 template <class Sample>
-void bind_type(nb::module_& module) {
+void bind_type(nb::module_& module, const NamedTuple& sample_extent) {
     module.def(
         "extent",
-        [](Vector<Sample> samples, int threads) {
+        [=](const Vector<Sample>& samples, int threads) {
             Extent found{};
             {
                 const nb::gil_scoped_release release;
                 found = extent(samples.data(), samples.shape(0), threads);
             }
-            return nb::make_tuple(found.minimum, found.maximum, found.nonfinite);
+            return sample_extent(found.minimum, found.maximum, found.nonfinite);
         },
         nb::arg("samples").noconvert(), nb::arg("threads"));
     module.def(
         "histogram",
-        [](Vector<Sample> samples, double low, double high, std::size_t bins, int threads) {
+        [](const Vector<Sample>& samples, double low, double high, std::size_t bins, int threads) {
             Array<std::uint64_t> counts;
             {
                 const nb::gil_scoped_release release;
@@ -37,7 +38,8 @@ void bind_type(nb::module_& module) {
 }  // namespace
 
 void bind_statistics(nb::module_& module) {
-    for_each_sample_type([&]<class Sample>() { bind_type<Sample>(module); });
+    const NamedTuple sample_extent(module, "Extent", {"minimum", "maximum", "nonfinite"});
+    for_each_sample_type([&]<class Sample>() { bind_type<Sample>(module, sample_extent); });
 }
 
 }  // namespace isocore::python

@@ -6,6 +6,7 @@
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
 #include "samples/sample_types.hpp"
 #include "surface/format.hpp"
 #include "surface/measure.hpp"
@@ -35,15 +36,19 @@ Affine to_affine(const AffineArray& array) {
 nb::tuple as_tuple(const std::array<double, 6>& b) { return nb::make_tuple(b[0], b[1], b[2], b[3], b[4], b[5]); }
 
 template <class Real>
-nb::tuple measure_mesh(const Rows<Real, 3>& vertices, const Triangles& triangles, int threads) {
-    Measured m;
-    {
-        nb::gil_scoped_release unlocked;
-        m = measure(mesh_view(vertices, triangles), threads);
-    }
-    const nb::tuple counts = nb::make_tuple(m.components, m.boundary_edges, m.nonmanifold_edges, m.nonmanifold_vertices,
-                                            m.misoriented_edges, m.euler, m.degenerate);
-    return nb::make_tuple(counts, m.area, m.volume, as_tuple(m.bounds));
+void bind_measure(nb::module_& module, const NamedTuple& measured) {
+    module.def(
+        "measure",
+        [=](const Rows<Real, 3>& vertices, const Triangles& triangles, int threads) {
+            Measured m;
+            {
+                nb::gil_scoped_release unlocked;
+                m = measure(mesh_view(vertices, triangles), threads);
+            }
+            return measured(m.components, m.boundary_edges, m.nonmanifold_edges, m.nonmanifold_vertices,
+                            m.misoriented_edges, m.euler, m.degenerate, m.area, m.volume, as_tuple(m.bounds));
+        },
+        nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("threads") = 1);
 }
 
 template <class From, class To>
@@ -107,8 +112,6 @@ nb::bytes text_of_rows(const std::string& tag, const Rows<Real, 3>& rows, int th
 template <class Real>
 void bind_real(nb::module_& module) {
     using nb::arg;
-    module.def("measure", &measure_mesh<Real>, arg("vertices").noconvert(), arg("triangles").noconvert(),
-               arg("threads") = 1);
     module.def(
         "bounds", [](const Rows<Real, 3>& vertices) { return as_tuple(bounds(vertices.data(), vertices.shape(0))); },
         arg("vertices").noconvert());
@@ -140,6 +143,11 @@ void bind_sample(nb::module_& module) {
 
 void bind_surface(nb::module_& module) {
     using nb::arg;
+    const NamedTuple measured(module, "Measured",
+                              {"components", "boundary_edges", "nonmanifold_edges", "nonmanifold_vertices",
+                               "misoriented_edges", "euler", "degenerate", "area", "volume", "bounds"});
+    bind_measure<float>(module, measured);
+    bind_measure<double>(module, measured);
     bind_real<float>(module);
     bind_real<double>(module);
     for_each_sample_type([&]<class Sample>() { bind_sample<Sample>(module); });

@@ -1,119 +1,165 @@
-// bind_thinning.cpp - build_index(points, tets, hexes, values) and propagate(points, values, index arrays..., isovalue,
-// threads, single).
-#include "thinning/mesh/thinning.hpp"
+// bind_thinning.cpp - build_index(points, tets, hexes, values), and the class Index: an index and its mesh, checked
+// once and then ready to propagate one isovalue after the other.
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
 
 #include <cstdint>
+#include <mutex>
+#include <stdexcept>
+#include <tuple>
 #include <utility>
+#include <variant>
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
+#include "thinning/mesh/thinning.hpp"
+#include "thinning/zeroed.hpp"
 
 namespace isocore::python {
 namespace {
 
-template <class T>
-using Scratch = nb::ndarray<T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-template <std::size_t columns>
-using Records = Rows<std::int32_t, static_cast<std::ptrdiff_t>(columns)>;
-
 constexpr std::size_t kTetRecord = thinning::kRecord<mesh::Tet>, kHexRecord = thinning::kRecord<mesh::Hex>;
 
-nb::tuple part_to_numpy(thinning::Part&& part, std::size_t columns) {
+nb::object part_to_numpy(thinning::Part&& part, std::size_t columns, const NamedTuple& index_part) {
     nb::list classes;
     for (const std::size_t count : part.classes) classes.append(count);
     const thinning::Oddities& odd = part.oddities;
-    return nb::make_tuple(to_numpy(std::move(part.records), columns), to_numpy(std::move(part.skeleton)),
-                          to_numpy(std::move(part.low)), to_numpy(std::move(part.high)), part.extrema,
-                          nb::tuple(classes), odd.crowded_faces,
-                          nb::make_tuple(odd.crowded_cells[0], odd.crowded_cells[1], odd.crowded_cells[2]),
-                          odd.collapsed_cells, odd.collapsed_cell);
+    return index_part(to_numpy(std::move(part.records), columns), to_numpy(std::move(part.skeleton)),
+                      to_numpy(std::move(part.low)), to_numpy(std::move(part.high)), part.extrema, nb::tuple(classes),
+                      odd.crowded_faces,
+                      nb::make_tuple(odd.crowded_cells[0], odd.crowded_cells[1], odd.crowded_cells[2]),
+                      odd.collapsed_cells, odd.collapsed_cell);
 }
 
 template <class Value>
-nb::object build(const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
-                 const Vector<Value>& values) {
-    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
-    thinning::Index index;
-    {
-        const nb::gil_scoped_release unlocked;
-        index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)});
-    }
-    return nb::make_tuple(part_to_numpy(std::move(index.tets), kTetRecord),
-                          part_to_numpy(std::move(index.hexes), kHexRecord), to_numpy(std::move(index.points)),
-                          index.edge_count);
+void bind_build(nb::module_& module, const NamedTuple& index_part, const NamedTuple& built_index) {
+    module.def(
+        "build_index",
+        [=](const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
+            const Vector<Value>& values) {
+            const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
+            thinning::Index index;
+            {
+                const nb::gil_scoped_release unlocked;
+                index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)});
+            }
+            return built_index(part_to_numpy(std::move(index.tets), kTetRecord, index_part),
+                               part_to_numpy(std::move(index.hexes), kHexRecord, index_part),
+                               to_numpy(std::move(index.points)), index.edge_count);
+        },
+        nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
+        nb::arg("values").noconvert());
 }
 
+// Records, skeleton, low and high ends of all cells of one kind.
 template <std::size_t columns>
-thinning::PartView view(const Records<columns>& records, const Vector<std::int32_t>& skeleton,
-                        const Vector<double>& low, const Vector<double>& high) {
+using PartArrays = std::tuple<Rows<std::int32_t, static_cast<std::ptrdiff_t>(columns)>, Vector<std::int32_t>,
+                              Vector<double>, Vector<double>>;
+
+template <std::size_t columns>
+thinning::PartView view(const PartArrays<columns>& part) {
+    const auto& [records, skeleton, low, high] = part;
+    if (low.shape(0) != skeleton.shape(0) || high.shape(0) != skeleton.shape(0)) {
+        throw std::invalid_argument("low and high must be as long as the skeleton");
+    }
     return {records.data(), skeleton.data(), low.data(), high.data(), records.shape(0), skeleton.shape(0)};
 }
 
-// The arrays of an index, in the order in which Python hands them over.
-#define ISOCORE_INDEX_PARAMETERS                                                                                \
-    const Rows<double, 3>&points, const Vector<Value>&values, const Records<kTetRecord>&tets,                   \
-        const Vector<std::int32_t>&tet_skeleton, const Vector<double>&tet_low, const Vector<double>&tet_high,   \
-        const Records<kHexRecord>&hexes, const Vector<std::int32_t>&hex_skeleton, const Vector<double>&hex_low, \
-        const Vector<double>&hex_high, const Vector<std::int32_t>&original, const Scratch<std::int32_t>&vertex_of_edge
-#define ISOCORE_INDEX_VIEW                                                                                   \
-    const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};                           \
-    const thinning::IndexView index {                                                                        \
-        view<kTetRecord>(tets, tet_skeleton, tet_low, tet_high),                                             \
-            view<kHexRecord>(hexes, hex_skeleton, hex_low, hex_high), original.data(), vertex_of_edge.data() \
-    }
+// Keeps the arrays it was made from alive, and copies none of them. Calls number their vertices in the same scratch
+// memory, so they take turns.
+class Index {
+  public:
+    using Values = std::variant<Vector<float>, Vector<double>>;
 
-template <class Coordinate, class Value>
-nb::object propagate_to(const mesh::Field<Value>& field, const thinning::IndexView& index, double isovalue,
-                        int threads) {
-    thinning::Mesh<Coordinate> mesh;
-    {
+    Index(Rows<double, 3> points, Values values, PartArrays<kTetRecord> tets, PartArrays<kHexRecord> hexes,
+          Vector<std::int32_t> original, std::size_t edges)
+        : points_(std::move(points)),
+          values_(std::move(values)),
+          tets_(std::move(tets)),
+          hexes_(std::move(hexes)),
+          original_(std::move(original)),
+          vertex_of_edge_(edges),
+          view_{view<kTetRecord>(tets_), view<kHexRecord>(hexes_), original_.data(), vertex_of_edge_.data()} {
+        const std::size_t count = points_.shape(0);
+        if (original_.shape(0) != count || std::visit([](const auto& v) { return v.shape(0); }, values_) != count) {
+            throw std::invalid_argument("there must be one value and one original id per point");
+        }
         const nb::gil_scoped_release unlocked;
-        mesh = thinning::propagate<Coordinate>(field, index, isovalue, threads);
+        thinning::check_index(view_, count, edges);
     }
-    return nb::make_tuple(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.seeds,
-                          mesh.visited);
-}
 
-template <class Value>
-nb::object propagate(ISOCORE_INDEX_PARAMETERS, double isovalue, int threads, bool single) {
-    ISOCORE_INDEX_VIEW;
-    return single ? propagate_to<float>(field, index, isovalue, threads)
-                  : propagate_to<double>(field, index, isovalue, threads);
-}
-
-template <class Value>
-nb::object walk(ISOCORE_INDEX_PARAMETERS, double isovalue) {
-    ISOCORE_INDEX_VIEW;
-    thinning::Visited visited;
-    {
+  private:
+    // Calls work(field) for the mesh with its values, without the GIL and alone.
+    template <class Work>
+    auto with_field(const Work& work) {
         const nb::gil_scoped_release unlocked;
-        visited = thinning::walk(field, index, isovalue);
+        const std::lock_guard<std::mutex> alone(one_at_a_time_);
+        return std::visit(
+            [&]<class Value>(const Vector<Value>& values) {
+                return work(mesh::Field<std::remove_const_t<Value>>{points_.data(), values.data(), values.shape(0)});
+            },
+            values_);
     }
-    return nb::make_tuple(to_numpy(std::move(visited.tets)), to_numpy(std::move(visited.hexes)), visited.seeds);
-}
 
-template <class Value, class Function, class... Extra>
-void bind_search(nb::module_& module, const char* name, Function function, Extra... extra) {
-    module.def(name, function, nb::arg("points").noconvert(), nb::arg("values").noconvert(),
-               nb::arg("tets").noconvert(), nb::arg("tet_skeleton").noconvert(), nb::arg("tet_low").noconvert(),
-               nb::arg("tet_high").noconvert(), nb::arg("hexes").noconvert(), nb::arg("hex_skeleton").noconvert(),
-               nb::arg("hex_low").noconvert(), nb::arg("hex_high").noconvert(), nb::arg("original").noconvert(),
-               nb::arg("vertex_of_edge").noconvert(), nb::arg("isovalue"), extra...);
-}
+  public:
+    nb::object propagate(double isovalue, int threads, bool single, const NamedTuple& walked_mesh) {
+        return single ? propagate_to<float>(isovalue, threads, walked_mesh)
+                      : propagate_to<double>(isovalue, threads, walked_mesh);
+    }
 
-template <class Value>
-void bind(nb::module_& module) {
-    module.def("build_index", &build<Value>, nb::arg("points").noconvert(), nb::arg("tets").noconvert(),
-               nb::arg("hexes").noconvert(), nb::arg("values").noconvert());
-    bind_search<Value>(module, "propagate", &propagate<Value>, nb::arg("threads") = 1, nb::arg("single") = false);
-    bind_search<Value>(module, "walk", &walk<Value>);
-}
+    nb::object walk(double isovalue, const NamedTuple& visited_cells) {
+        thinning::Visited visited =
+            with_field([&](const auto& field) { return thinning::walk(field, view_, isovalue); });
+        return visited_cells(to_numpy(std::move(visited.tets)), to_numpy(std::move(visited.hexes)), visited.seeds);
+    }
+
+  private:
+    template <class Coordinate>
+    nb::object propagate_to(double isovalue, int threads, const NamedTuple& walked_mesh) {
+        thinning::Mesh<Coordinate> mesh = with_field(
+            [&](const auto& field) { return thinning::propagate<Coordinate>(field, view_, isovalue, threads); });
+        return walked_mesh(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.seeds,
+                           mesh.visited);
+    }
+
+    Rows<double, 3> points_;
+    Values values_;
+    PartArrays<kTetRecord> tets_;
+    PartArrays<kHexRecord> hexes_;
+    Vector<std::int32_t> original_;
+    thinning::Zeroed vertex_of_edge_;
+    thinning::IndexView view_;
+    std::mutex one_at_a_time_;
+};
 
 }  // namespace
 
 void bind_thinning(nb::module_& module) {
-    bind<float>(module);
-    bind<double>(module);
+    using nb::arg;
+    const NamedTuple index_part(module, "IndexPart",
+                                {"records", "skeleton", "low", "high", "extrema", "classes", "crowded_faces",
+                                 "crowded_cells", "collapsed_cells", "collapsed_cell"});
+    const NamedTuple built_index(module, "BuiltIndex", {"tets", "hexes", "original", "edges"});
+    bind_build<float>(module, index_part, built_index);
+    bind_build<double>(module, index_part, built_index);
+
+    const NamedTuple walked_mesh(module, "WalkedMesh", {"vertices", "triangles", "seeds", "visited"});
+    const NamedTuple visited_cells(module, "VisitedCells", {"tets", "hexes", "seeds"});
+    nb::class_<Index>(module, "Index")
+        .def(nb::init<Rows<double, 3>, Index::Values, PartArrays<kTetRecord>, PartArrays<kHexRecord>,
+                      Vector<std::int32_t>, std::size_t>(),
+             arg("points").noconvert(), arg("values").noconvert(), arg("tets").noconvert(), arg("hexes").noconvert(),
+             arg("original").noconvert(), arg("edges"))
+        .def(
+            "propagate",
+            [=](Index& index, double isovalue, int threads, bool single) {
+                return index.propagate(isovalue, threads, single, walked_mesh);
+            },
+            arg("isovalue"), arg("threads") = 1, arg("single") = false)
+        .def(
+            "walk", [=](Index& index, double isovalue) { return index.walk(isovalue, visited_cells); },
+            arg("isovalue"));
 }
 
 }  // namespace isocore::python

@@ -38,6 +38,12 @@ class GridWalk {
   public:
     GridWalk(const PaddedGrid<Sample>& grid, const GridSkeletonView& skeleton, double isovalue)
         : grid_(grid), skeleton_(skeleton), inside_(isovalue, grid.below) {}
+    // Takes the marks of the visited cells back, also where drawing them has thrown.
+    ~GridWalk() {
+        for (const int32_t cell : cells) skeleton_.place[cell] = 0;
+    }
+    GridWalk(const GridWalk&) = delete;
+    GridWalk& operator=(const GridWalk&) = delete;
 
     void run(double isovalue) {
         const double height = grid_.below ? -isovalue : isovalue;
@@ -46,10 +52,6 @@ class GridWalk {
             visit(skeleton_.cells[n]);
         });
         for (size_t head = 0; head < cells.size(); ++head) step(cells[head]);
-    }
-
-    void forget() {
-        for (const int32_t cell : cells) skeleton_.place[cell] = 0;
     }
 
     Array<int32_t> cells;
@@ -251,7 +253,6 @@ GridMesh propagate_grid(GridView<Sample> samples, const GridSkeletonView& skelet
     GridWalk<Sample> walk(grid, skeleton, isovalue);
     walk.run(isovalue);
     GridMesh mesh = GridDrawing<Sample>(grid, walk, skeleton.place, isovalue).run(threads);
-    walk.forget();
     mesh.seeds = walk.seeds;
     mesh.visited = walk.cells.size();
     return mesh;

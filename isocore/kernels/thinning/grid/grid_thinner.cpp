@@ -212,6 +212,7 @@ class GridThinner {
             skeleton.high.push_back(high);
         }
         skeleton.extrema = extrema_;
+        skeleton.volume_cells = grid_.cell_count();
         return skeleton;
     }
 

@@ -1,8 +1,10 @@
-// thinning.hpp - Volume thinning and isosurface propagation: the two public functions.
+// thinning.hpp - Volume thinning and isosurface propagation on a mesh: the public functions.
 //
 // build: once per field. tets and hexes as in marching_cells.hpp. Linear in the number of cells.
+// check_index: once per index that somebody else hands over. Linear in the number of cells.
 // propagate: once per isovalue. Visits the cells the isosurface meets and no others, and returns the vertices and the
 // triangles a full scan would, in the order of the index's cells: the same bytes for any number of threads.
+// walk: the search of propagate alone, to time it apart from the drawing.
 #pragma once
 
 #include <array>
@@ -53,9 +55,13 @@ struct PartView {
 
 struct IndexView {
     PartView tets, hexes;
-    const std::int32_t* points;
-    std::int32_t* vertex_of_edge;  // one per edge, of no meaning between two calls
+    const std::int32_t* points;    // the mesh's id of every point of the index
+    std::int32_t* vertex_of_edge;  // scratch, one per edge: of no meaning between two calls, and not shared by two
 };
+
+// Throws std::invalid_argument unless all that the index names is there, every edge has one owner, and the skeleton is
+// sorted by low. `points` and `edges` are how many there are.
+void check_index(const IndexView& index, std::size_t points, std::size_t edges);
 
 template <class Coordinate>
 struct Mesh {
@@ -65,11 +71,11 @@ struct Mesh {
     std::size_t visited = 0;        // cells walked, all of which it meets
 };
 
-// field: of the points as the index numbers them.
+// field: the points and values as the index numbers them. The index must be one that check_index accepts.
 template <class Coordinate, class Value>
 Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
 
-// The search alone: the cells propagate would draw, ascending.
+// The cells that propagate would draw, ascending.
 struct Visited {
     Array<std::int32_t> tets, hexes;
     std::size_t seeds = 0;

@@ -1,0 +1,147 @@
+"""The compiled module as Python sees it: named results, and the handle of a mesh's index."""
+
+from __future__ import annotations
+
+import ast
+import gc
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import meshes
+import numpy as np
+import pytest
+
+import isocore
+from isocore import _kernels
+from isocore.cell_mesh import CellMesh
+from isocore.extraction import Options
+from isocore.methods.index_file import save_index
+from isocore.methods.mesh_index import MeshIndex
+from isocore.methods.thinning import build_index, prepare_thinning, ready_index
+
+STUB = ast.parse((Path(isocore.__file__).parent / "_kernels.pyi").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def mesh() -> CellMesh:
+    cubes = meshes.mesh_of(np.ones((4, 4, 4), bool), hexes=True)
+    tets = meshes.mesh_of(np.ones((4, 4, 4), bool))
+    mixed = CellMesh(cubes.points, tets.tets[:200], cubes.hexes, np.zeros(len(cubes.points)))
+    return meshes.with_values(mixed, np.sin(2 * mixed.points).sum(axis=1))
+
+
+def test_the_stub_and_the_module_offer_the_same_names() -> None:
+    """A name in one is a name in the other; so are the fields of every named tuple, in order."""
+    declared = {node.name: node for node in STUB.body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    compiled = {name for name in vars(_kernels_module()) if not name.startswith("_")}
+    assert compiled == set(declared)
+    for name, node in declared.items():
+        if isinstance(node, ast.ClassDef) and node.bases:
+            fields = tuple(
+                line.target.id
+                for line in node.body
+                if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name)
+            )
+            assert getattr(_kernels, name)._fields == fields
+
+
+def _kernels_module() -> object:
+    import sys
+
+    return sys.modules[_kernels.Index.__module__]
+
+
+def _swapped_low(index: MeshIndex) -> MeshIndex:
+    return replace(index, hexes=replace(index.hexes, low=index.hexes.low[::-1].copy()))
+
+
+def _with_record(index: MeshIndex, column: int, number: int) -> MeshIndex:
+    records = index.tets.records.copy()
+    records[7, column] = number
+    return replace(index, tets=replace(index.tets, records=records))
+
+
+#: What is said -> an index that deserves it. Columns of a tetrahedron's record: 4 points, 4 twins, 6 edges.
+DAMAGES = {
+    "a point that does not exist": lambda index: _with_record(index, 2, len(index.original)),
+    "a point that does not": lambda index: _with_record(index, 2, -1),
+    "a cell that does not exist": lambda index: _with_record(index, 5, 4 * len(index.tets.records)),
+    "an edge that does not exist": lambda index: _with_record(index, 9, index.edges),
+    "or has two owners": lambda index: _with_record(index, 9, index.tets.records[0, 8]),
+    "an edge has no owner": lambda index: replace(index, edges=index.edges + 1),
+    "the skeleton names": lambda index: replace(
+        index, tets=replace(index.tets, skeleton=index.tets.skeleton + len(index.tets.records))
+    ),
+    "not sorted": _swapped_low,
+    "as long as the skeleton": lambda index: replace(index, tets=replace(index.tets, high=index.tets.high[1:])),
+}
+
+
+@pytest.mark.parametrize("said", DAMAGES)
+def test_an_index_is_checked_once_before_it_is_walked(mesh: CellMesh, said: str) -> None:
+    """Whatever it names must be there; the message says what is not."""
+    index = build_index(mesh)
+    assert index.tets.records[0, 8] < 0, "the first cell owns its edges"
+    assert len(np.unique(index.hexes.low)) > 1
+    with pytest.raises(ValueError, match=said):
+        ready_index(mesh, DAMAGES[said](index))
+
+
+def test_one_value_and_one_id_per_point(mesh: CellMesh) -> None:
+    """Arrays of different lengths do not go together."""
+    index = build_index(mesh)
+    parts = [(part.records, part.skeleton, part.low, part.high) for part in index.parts]
+    for points, values, original in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        with pytest.raises(ValueError, match="per point"):
+            _kernels.Index(
+                mesh.points[index.original][points:],
+                mesh.values[index.original][values:],
+                *parts,
+                index.original[original:],
+                index.edges,
+            )
+
+
+def test_a_handle_takes_no_other_types(mesh: CellMesh) -> None:
+    """Nothing is converted on the way: that would be a copy."""
+    index = build_index(mesh)
+    with pytest.raises(TypeError):
+        ready_index(mesh, replace(index, tets=replace(index.tets, records=index.tets.records.astype(np.int64))))
+
+
+def test_a_handle_keeps_its_arrays_alive(mesh: CellMesh) -> None:
+    """It is the only one that still holds them, and other memory was asked for since."""
+    expected = ready_index(mesh, build_index(mesh)).propagate(0.3)
+    index = build_index(mesh)
+    copies = [replace(part, records=part.records.copy(), skeleton=part.skeleton.copy()) for part in index.parts]
+    ready = ready_index(mesh, replace(index, tets=copies[0], hexes=copies[1], original=index.original.copy()))
+    del index, copies
+    gc.collect()
+    filled = [np.full(len(mesh.tets) * 14 // n, -1, np.int32) for n in range(1, 200)]
+    assert [a.tobytes() for a in ready.propagate(0.3)[:2]] == [a.tobytes() for a in expected[:2]]
+    assert len(filled) == 199
+
+
+def test_calls_from_several_threads_take_turns(mesh: CellMesh) -> None:
+    """They share one scratch array, and still get the bytes that they would get alone."""
+    ready = ready_index(mesh, build_index(mesh))
+    grid = _kernels.GridIndex(np.asfortranarray(np.random.default_rng(2).random((24, 24, 24))))
+    isovalues = [0.1 + 0.01 * n for n in range(40)]
+    for handle in (ready, grid):
+        alone = [handle.propagate(isovalue) for isovalue in isovalues]
+        with ThreadPoolExecutor(4) as pool:
+            together = list(pool.map(handle.propagate, isovalues))
+        for one, other in zip(alone, together, strict=True):
+            assert one.vertices.tobytes() == other.vertices.tobytes()
+            assert one.triangles.tobytes() == other.triangles.tobytes()
+
+
+def test_a_loaded_index_that_names_what_is_not_there_is_made_anew(mesh: CellMesh, tmp_path: Path) -> None:
+    """The checksum covers the arrays, not how many edges the header says there are."""
+    path = tmp_path / "mesh.isoindex"
+    index = build_index(mesh)
+    save_index(path, replace(index, edges=index.edges - 1), mesh)
+    found = prepare_thinning(mesh, Options(index=path, isovalues=2))(0.3)
+    assert any("is damaged" in warning and "thinned anew" in warning for warning in found.warnings)
+    assert len(found.surface.triangles) == len(ready_index(mesh, index).propagate(0.3).triangles)
