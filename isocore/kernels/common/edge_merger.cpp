@@ -1,11 +1,12 @@
-// edge_merger.cpp - See edge_merger.hpp. Threads never meet: every run of edges knows its places in every range before
-// it is scattered, and every range its vertices before they are written.
+// edge_merger.cpp - A parallel radix sort without locks: prefix sums over the counts give every run of edges its places
+// in every range before it is scattered, and every range its first vertex before the vertices are written.
 #include "common/edge_merger.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "common/parallel.hpp"
 
@@ -33,8 +34,8 @@ void sort_by_low(Array<Seen>& range, std::int32_t first, std::size_t points) {
 }
 
 // Numbers the distinct edges of a sorted range from 0 on.
-Array<Edge> number(Array<Seen>& range) {
-    Array<Edge> found;
+Array<MeshEdge> number(Array<Seen>& range) {
+    Array<MeshEdge> found;
     for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end) {
         while (end < range.size() && range[end].low == range[begin].low) ++end;
         if (end - begin > kFewEdges * kFewEdges) {
@@ -49,7 +50,7 @@ Array<Edge> number(Array<Seen>& range) {
                 edge.vertex = -1;
                 continue;
             }
-            // The last ones first: after a sort by the higher point the match, if any, is the last.
+            // From the last one back: after a sort by the higher point an equal edge, if there is one, is the last.
             std::size_t match = found.size();
             while (match > first && found[match - 1].high != edge.high && !(end - begin > kFewEdges * kFewEdges))
                 --match;
@@ -64,30 +65,30 @@ Array<Edge> number(Array<Seen>& range) {
     return found;
 }
 
-}  // namespace
+using Runs = std::vector<Array<MeshEdge>>;
 
-Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int threads) {
-    std::size_t total = 0;
-    for (const auto& run : seen) total += run.size();
-    if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("the surface has too many edges");
-    const std::size_t ranges = std::clamp<std::size_t>(std::bit_ceil(total / kEdgesPerRange + 1), 1, kMaxRanges);
-    const std::size_t width = points / ranges + 1;  // points per range
-    const auto range_of = [&](const Edge& edge) { return static_cast<std::size_t>(edge.low) / width; };
+// Which range of lower points an edge belongs to.
+struct Ranges {
+    std::size_t count, width;  // width: points per range
 
+    Ranges(std::size_t edges, std::size_t points)
+        : count(std::clamp<std::size_t>(std::bit_ceil(edges / kEdgesPerRange + 1), 1, kMaxRanges)),
+          width(points / count + 1) {}
+    std::size_t of(const MeshEdge& edge) const { return static_cast<std::size_t>(edge.low) / width; }
+};
+
+// The first step of the radix sort: the edges of every range, in the order of their places.
+std::vector<Array<Seen>> scatter(const Runs& seen, const Ranges& ranges, int threads) {
     // places[run][range]: first the count, then where the run's edges go.
     std::vector<std::vector<std::uint32_t>> places(seen.size());
     parallel_for(threads, seen.size(), [&](std::size_t run) {
-        places[run].resize(ranges);
-        for (const Edge& edge : seen[run]) ++places[run][range_of(edge)];
+        places[run].resize(ranges.count);
+        for (const MeshEdge& edge : seen[run]) ++places[run][ranges.of(edge)];
     });
-    std::vector<Array<Seen>> sorted(ranges);
-    for (std::size_t range = 0; range < ranges; ++range) {
+    std::vector<Array<Seen>> sorted(ranges.count);
+    for (std::size_t range = 0; range < ranges.count; ++range) {
         std::uint32_t size = 0;
-        for (auto& counts : places) {
-            const std::uint32_t count = counts[range];
-            counts[range] = size;
-            size += count;
-        }
+        for (auto& counts : places) size += std::exchange(counts[range], size);
         sorted[range].resize(size);
     }
     std::vector<std::uint32_t> first_place(seen.size());
@@ -95,27 +96,42 @@ Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int
         first_place[run] = first_place[run - 1] + static_cast<std::uint32_t>(seen[run - 1].size());
     parallel_for(threads, seen.size(), [&](std::size_t run) {
         std::uint32_t place = first_place[run];
-        for (const Edge& edge : seen[run]) {
-            const std::size_t range = range_of(edge);
+        for (const MeshEdge& edge : seen[run]) {
+            const std::size_t range = ranges.of(edge);
             sorted[range][places[run][range]++] = {edge.low, edge.high, place++, 0};
         }
     });
+    return sorted;
+}
 
-    std::vector<Array<Edge>> found(ranges);
-    parallel_for(threads, ranges, [&](std::size_t range) {
-        sort_by_low(sorted[range], static_cast<std::int32_t>(range * width), width);
-        found[range] = number(sorted[range]);
-    });
-    std::vector<std::size_t> first_vertex(ranges + 1);
-    for (std::size_t range = 0; range < ranges; ++range)
-        first_vertex[range + 1] = first_vertex[range] + found[range].size();
-    if (first_vertex[ranges] > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+// Where the vertices of every range begin; and, last, how many vertices there are.
+std::vector<std::size_t> first_vertices(const Runs& found) {
+    std::vector<std::size_t> first(found.size() + 1);
+    for (std::size_t range = 0; range < found.size(); ++range) first[range + 1] = first[range] + found[range].size();
+    if (first.back() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
         throw std::length_error("the surface has more vertices than 2^31 - 1; choose another isovalue");
     }
+    return first;
+}
+
+}  // namespace
+
+Merged merge_edges(const Runs& seen, std::size_t points, int threads) {
+    std::size_t total = 0;
+    for (const auto& run : seen) total += run.size();
+    if (total > std::numeric_limits<std::uint32_t>::max()) throw std::length_error("the surface has too many edges");
+    const Ranges ranges(total, points);
+    std::vector<Array<Seen>> sorted = scatter(seen, ranges, threads);
+    Runs found(ranges.count);
+    parallel_for(threads, ranges.count, [&](std::size_t range) {
+        sort_by_low(sorted[range], static_cast<std::int32_t>(range * ranges.width), ranges.width);
+        found[range] = number(sorted[range]);
+    });
+    const std::vector<std::size_t> first_vertex = first_vertices(found);
     Merged merged;
-    merged.edges.resize(first_vertex[ranges]);
+    merged.edges.resize(first_vertex.back());
     merged.vertex_of.resize(total);
-    parallel_for(threads, ranges, [&](std::size_t range) {
+    parallel_for(threads, ranges.count, [&](std::size_t range) {
         const auto first = static_cast<std::int32_t>(first_vertex[range]);
         std::copy(found[range].begin(), found[range].end(), merged.edges.begin() + first);
         for (const Seen& edge : sorted[range])

@@ -11,16 +11,16 @@
 
 namespace isocore {
 
-struct Edge {
+struct MeshEdge {
     std::int32_t low, high;  // point ids, low < high; equal ones name no edge and get vertex -1
 };
 
 struct Merged {
-    Array<Edge> edges;              // one per vertex
+    Array<MeshEdge> edges;          // one per vertex
     Array<std::int32_t> vertex_of;  // one per edge seen
 };
 
 // `seen` comes in runs that were found apart; `points` is the number of points.
-Merged merge_edges(const std::vector<Array<Edge>>& seen, std::size_t points, int threads);
+Merged merge_edges(const std::vector<Array<MeshEdge>>& seen, std::size_t points, int threads);
 
 }  // namespace isocore

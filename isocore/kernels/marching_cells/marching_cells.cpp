@@ -41,7 +41,7 @@ Array<std::uint8_t> classify(const Field<Value>& field, double isovalue, int thr
 // on, middles of loops.
 struct Drawn {
     static constexpr std::uint32_t kMiddles = std::uint32_t{1} << 31;
-    Array<Edge> edges;
+    Array<MeshEdge> edges;
     Array<std::uint32_t> triangles;
     std::vector<std::array<std::uint32_t, 2>> middles;  // the triangles around each: first, end
     std::size_t intersected = 0;
@@ -90,7 +90,8 @@ Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size
         unsigned inside = 0;
         for (std::size_t n = 0; n < Cell::kCorners; ++n) inside += signs[ids[n]];
         active[found] = static_cast<std::uint32_t>(cell);
-        found += inside - 1 < Cell::kCorners - 1;  // neither 0 nor all
+        found += inside - 1 <
+                 Cell::kCorners - 1;  // some corners are inside, not all; no branch, which would be mispredicted
     }
     Drawn out;
     out.edges.reserve(4 * found);
@@ -100,7 +101,7 @@ Drawn draw_chunk(const Field<Value>& field, const std::int32_t* cells, std::size
     return out;
 }
 
-// Turns the chunks' triangles into those of the mesh: the second half of the work, chunk by chunk.
+// The second half of the work, chunk by chunk: turns places among a chunk's edges into the mesh's vertices.
 template <class Coordinate>
 class Joiner {
   public:
@@ -184,7 +185,7 @@ Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double iso
                            ? draw_chunk<Tet>(field, cells.tets + Tet::kCorners * first, count, signs.data(), isovalue)
                            : draw_chunk<Hex>(field, cells.hexes + Hex::kCorners * first, count, signs.data(), isovalue);
     });
-    std::vector<Array<Edge>> seen(drawn.size());
+    std::vector<Array<MeshEdge>> seen(drawn.size());
     for (std::size_t n = 0; n < drawn.size(); ++n) seen[n] = std::move(drawn[n].edges);
     const Merged merged = merge_edges(seen, field.size, threads);
     for (std::size_t n = 0; n < drawn.size(); ++n) drawn[n].edges = std::move(seen[n]);
