@@ -1,5 +1,5 @@
-// gluing.cpp - Adjacency by a radix sort of faces, then vertex and edge copies by walking around them (thinning.md,
-// sections 2 and 5: the guarantee is proved for the mesh glued along faces).
+// gluing.cpp - Adjacency by a bucket sort of faces, then vertex and edge copies by walking around them. The guarantee
+// is proved for the mesh glued along faces (docs/proofs/thinning.md, sections 1 and 2), which is why there are copies.
 #include "thinning/mesh/gluing.hpp"
 
 #include <algorithm>
@@ -71,14 +71,27 @@ bool collapsed(const int32_t* ids) {
     return false;
 }
 
+// The faces of all cells but the collapsed ones, in buckets by their lowest point.
+struct Buckets {
+    Array<Face> faces;
+    std::vector<std::uint32_t> end;  // of every point's bucket, which begins where the one before ends
+};
+
 template <class Cell>
-void pair_faces(Gluing<Cell>& gluing, size_t points) {
-    const size_t cells = gluing.cells;
-    gluing.twins.resize(Cell::kFaces * cells);
-    std::fill(gluing.twins.begin(), gluing.twins.end(), -1);
+Face named_face(const int32_t* corners, size_t cell, size_t face, int32_t& lowest) {
+    const auto ids = named_points(Cell{}, corners, face);
+    lowest = ids[0];
+    const std::uint64_t next = static_cast<std::uint64_t>(ids[1]) << 32 | static_cast<std::uint32_t>(ids[2]);
+    const std::uint32_t last = Cell::kFaceCorners == 4 ? static_cast<std::uint32_t>(ids[Cell::kFaceCorners - 1]) : 0;
+    return {next, last, static_cast<int32_t>(Cell::kFaces * cell + face)};
+}
+
+// A counting sort: counts, prefix sums, scattering.
+template <class Cell>
+Buckets sort_faces(Gluing<Cell>& gluing, size_t points) {
     std::vector<std::uint32_t> start(points + 1);
-    std::vector<std::uint8_t> loose(cells);
-    for (size_t cell = 0; cell < cells; ++cell) {
+    std::vector<std::uint8_t> loose(gluing.cells);
+    for (size_t cell = 0; cell < gluing.cells; ++cell) {
         const int32_t* ids = gluing.corners.data() + Cell::kCorners * cell;
         if (collapsed<Cell>(ids)) {
             loose[cell] = 1;
@@ -90,21 +103,28 @@ void pair_faces(Gluing<Cell>& gluing, size_t points) {
     }
     for (size_t point = 0; point < points; ++point) start[point + 1] += start[point];
     Array<Face> faces(start[points]);
-    for (size_t cell = 0; cell < cells; ++cell) {
+    for (size_t cell = 0; cell < gluing.cells; ++cell) {
         if (loose[cell]) continue;
         for (size_t face = 0; face < Cell::kFaces; ++face) {
-            const auto ids = named_points(Cell{}, gluing.corners.data() + Cell::kCorners * cell, face);
-            const std::uint64_t next = static_cast<std::uint64_t>(ids[1]) << 32 | static_cast<std::uint32_t>(ids[2]);
-            const std::uint32_t last =
-                Cell::kFaceCorners == 4 ? static_cast<std::uint32_t>(ids[Cell::kFaceCorners - 1]) : 0;
-            faces[start[static_cast<size_t>(ids[0])]++] = {next, last,
-                                                           static_cast<int32_t>(Cell::kFaces * cell + face)};
+            int32_t lowest;
+            const Face named = named_face<Cell>(gluing.corners.data() + Cell::kCorners * cell, cell, face, lowest);
+            faces[start[static_cast<size_t>(lowest)]++] = named;
         }
     }
+    return {std::move(faces), std::move(start)};  // scattering has moved every start to the bucket's end
+}
+
+// Makes twins of the two faces that are the same. Faces of more than two cells stay apart, and the first is reported.
+template <class Cell>
+void pair_faces(Gluing<Cell>& gluing, size_t points) {
+    gluing.twins.resize(Cell::kFaces * gluing.cells);
+    std::fill(gluing.twins.begin(), gluing.twins.end(), -1);
+    Buckets buckets = sort_faces(gluing, points);
+    Array<Face>& faces = buckets.faces;
     int32_t first_crowded = std::numeric_limits<int32_t>::max();
     size_t begin = 0;
-    for (size_t point = 0; point < points; ++point) {  // scattering has moved every start to the bucket's end
-        const size_t end = start[point];
+    for (size_t point = 0; point < points; ++point) {
+        const size_t end = buckets.end[point];
         std::sort(faces.begin() + static_cast<std::ptrdiff_t>(begin), faces.begin() + static_cast<std::ptrdiff_t>(end));
         for (size_t same = begin; begin < end; begin = same) {
             while (same < end && faces[same].same_points(faces[begin])) ++same;
@@ -190,6 +210,7 @@ constexpr EdgeTables<Cell> kEdgeTables = [] {
     return tables;
 }();
 
+// Union-find over boundary faces: two that meet at an edge belong to one shell, a connected piece of boundary.
 class Shells {
   public:
     explicit Shells(size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -210,7 +231,8 @@ class Shells {
     Array<int32_t> parent_;
 };
 
-// Walks around an edge from a cell through a face and names what it meets; returns the boundary face it ends at, or -1.
+// Walks around an edge, from a cell on through a face, and gives every edge of a cell that it passes the same name.
+// Returns the boundary face where the walk ends, or -1 if it comes back to where it has been.
 template <class Cell>
 int32_t name_around(Gluing<Cell>& gluing, size_t cell, size_t edge, size_t face, int32_t name) {
     const auto& ends = Cell::kShape.ends[edge];
