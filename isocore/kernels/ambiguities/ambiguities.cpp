@@ -1,5 +1,5 @@
-// The saddle is that of G. M. Nielson, B. Hamann, "The Asymptotic Decider: Resolving the Ambiguity in Marching Cubes",
-// IEEE Visualization 1991. Candidates are found on sign bits, 64 faces at a time.
+// ambiguities.cpp - The saddle is that of G. M. Nielson, B. Hamann, "The Asymptotic Decider: Resolving the Ambiguity in
+// Marching Cubes", IEEE Visualization 1991. Candidates are found on sign bits, 64 faces at a time.
 #include "ambiguities/ambiguities.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace isocore::ambiguities {
 namespace {
 
-// Faces across `axis` whose lowest samples lie in word w of row (j, k) and whose corners alternate.
+// The faces across `axis` whose corners alternate, one bit each: by their lowest sample, in word w of row (j, k).
 std::uint64_t alternating(const SignGrid& signs, int axis, std::size_t j, std::size_t k, std::size_t w) {
     if ((axis != 1 && j + 1 == signs.dims[1]) || (axis != 2 && k + 1 == signs.dims[2])) return 0;
     const SignRow row = signs.row(j, k);
@@ -40,6 +40,8 @@ void add(const GridView<Sample>& samples, double isovalue, bool below, int axis,
     const auto above = [&](std::size_t offset) { return static_cast<double>(low[offset]) - isovalue; };
     const double f00 = above(0), f10 = above(u), f01 = above(v), f11 = above(u + v);
     if (!std::isfinite(f00) || !std::isfinite(f10) || !std::isfinite(f01) || !std::isfinite(f11)) return;
+    // The bilinear function has its saddle at (f00 - f01, f00 - f10) / bend; where bend is 0 it is a plane, without
+    // one.
     const double bend = f00 + f11 - f10 - f01;
     const auto share = [&](double n) { return bend != 0 ? std::clamp(n / bend, 0.0, 1.0) : 0.5; };
     const double saddle = bend != 0 ? (f00 * f11 - f10 * f01) / bend : 0;

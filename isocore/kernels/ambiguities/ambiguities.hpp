@@ -10,8 +10,9 @@ namespace isocore::ambiguities {
 
 struct Found {
     Array<double> places;  // x, y, z in index space of each face's saddle
-    Array<double>
-        distances;  // of the saddle's value from the isovalue; not below 0 where the inside corners are joined
+    // Each saddle's value minus the isovalue (turned over with `below`): not below 0 where the inside corners are
+    // joined.
+    Array<double> distances;
 };
 
 // samples: at least 2 per axis. `below`: inside is sample <= isovalue; distances are positive inside then too.

@@ -1,4 +1,5 @@
-// bit_fields.hpp - Some bits of a word, moved close together or back: one instruction where the processor has it.
+// bit_fields.hpp - Gathering chosen bits of a word and scattering them again: one instruction with BMI2 (pext, pdep),
+// a loop elsewhere. And words of 64 bits read from and written to any byte.
 #pragma once
 
 #include <bit>
@@ -13,7 +14,7 @@
 
 namespace isocore {
 
-// The bits of `word` that `places` names, as the lowest bits of the result.
+// The bits of `word` at the `places` that are set, moved together into the lowest bits of the result (pext).
 inline std::uint64_t extract_bits(std::uint64_t word, std::uint64_t places) {
 #if defined(ISOCORE_HAS_BMI2)
     return _pext_u64(word, places);
@@ -24,7 +25,7 @@ inline std::uint64_t extract_bits(std::uint64_t word, std::uint64_t places) {
 #endif
 }
 
-// The other way round: the lowest bits of `bits`, each at one of the `places`.
+// The inverse (pdep): the lowest bits of `bits`, each moved to one of the set `places`, in order.
 inline std::uint64_t deposit_bits(std::uint64_t bits, std::uint64_t places) {
 #if defined(ISOCORE_HAS_BMI2)
     return _pdep_u64(bits, places);
@@ -35,7 +36,8 @@ inline std::uint64_t deposit_bits(std::uint64_t bits, std::uint64_t places) {
 #endif
 }
 
-// Bytes as words and words as bytes, at any place, the lowest bits first.
+// Loads a word from eight bytes at any address, and stores the first `count` bytes of some words: the lowest bits come
+// first, whatever the machine's byte order.
 inline std::uint64_t load_bits(const std::uint8_t* bytes) {
     std::uint64_t word;
     if constexpr (std::endian::native == std::endian::little) {
@@ -54,12 +56,12 @@ inline void store_bits(const std::uint64_t* words, std::uint8_t* bytes, std::siz
     }
 }
 
-// A word of those bits of several that start with bit `first`. A word more than these is read.
+// The 64 bits that start at bit `first` of an array of words. Reads word first / 64 + 1 as well, so it must be there.
 inline std::uint64_t bits_from(const std::uint64_t* words, std::size_t first) {
     return words[first / 64] >> first % 64 | words[first / 64 + 1] << 1 << (63 - first % 64);
 }
 
-// A word of `count` ones, at most 64.
+// A word whose lowest `count` bits are set; count is at most 64.
 inline std::uint64_t lowest_bits(std::size_t count) {
 #if defined(ISOCORE_HAS_BMI2)
     return _bzhi_u64(~std::uint64_t{0}, static_cast<unsigned>(count));

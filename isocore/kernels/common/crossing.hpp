@@ -1,5 +1,6 @@
-// crossing.hpp - Who is inside, where an edge is crossed, and how an ambiguous face is decided: the three
-// rules every algorithm shares. There is no other epsilon in the kernels than the clamp below.
+// crossing.hpp - The only place where it is decided who is inside and where an edge is crossed, and how an ambiguous
+// face is joined: the three rules that all algorithms share, so that all of them agree to the last bit. There is no
+// other epsilon in the kernels than the clamp below.
 #pragma once
 
 #include <cmath>
@@ -62,7 +63,7 @@ double crossing(Sample a, Sample b, double isovalue) {
         if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
     }
     const double fa = static_cast<double>(a), fb = static_cast<double>(b);
-    const double t = (isovalue - fa) / (fb - fa), above = t > kClamp ? t : kClamp;  // no branch: none could be guessed
+    const double t = (isovalue - fa) / (fb - fa), above = t > kClamp ? t : kClamp;  // a conditional move
     return above < 1 - kClamp ? above : 1 - kClamp;
 }
 

@@ -1,4 +1,5 @@
-// gaps.hpp - Tasks write their triangles where at most so many fit; afterwards the gaps between them are closed.
+// gaps.hpp - Every task gets room for the most triangles that it may draw, so that all can write at once; afterwards
+// this moves what they have drawn together.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 
 namespace isocore {
 
-// runs: in order, each with its `first_triangle` and how many `triangles` it has.
+// runs: one per task, in the order of their places, each with its `first_triangle` and how many `triangles` it has.
 template <class Runs>
 void close_gaps(const Runs& runs, Array<std::int32_t>& triangles) {
     std::size_t end = 0;

@@ -1,5 +1,5 @@
-// mesh_cells.hpp - The two cells of a mesh: what their corners, edges and faces are called, and which triangles a sign
-// pattern draws. Tetrahedra have no ambiguous case; hexahedra are decided face by face like the cells of a grid.
+// mesh_cells.hpp - The two cells of a mesh: how their corners, edges and faces are numbered, and which edges and faces
+// are crossed. Which triangles they draw stands in tables/mesh_cases.hpp.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ using Mask = std::uint32_t;
 
 template <std::size_t corners, std::size_t edges, std::size_t faces>
 struct Shape {
-    std::array<std::array<std::uint8_t, 2>, edges> ends{};  // of every edge
+    std::array<std::array<std::uint8_t, 2>, edges> ends{};  // the two corners of every edge
     std::array<Mask, faces> face_corners{}, face_edges{};
     std::array<Mask, corners> corner_edges{};
 
@@ -45,8 +45,8 @@ struct Tet {
         shape.connect();
         return shape;
     }();
-    static constexpr std::array<std::uint8_t, 4> kFromVtk{0, 1, 2, 3};
-    static constexpr std::array<std::uint8_t, 4> kMirrored{0, 1, 3, 2};
+    static constexpr std::array<std::uint8_t, 4> kFromVtk{0, 1, 2, 3};   // VTK's number of each of our corners
+    static constexpr std::array<std::uint8_t, 4> kMirrored{0, 1, 3, 2};  // the corners of the cell turned inside out
 };
 
 // Corners as in cube.hpp.
@@ -69,12 +69,13 @@ struct Hex {
     static constexpr std::array<std::uint8_t, 8> kMirrored{4, 5, 6, 7, 0, 1, 2, 3};
 };
 
-// Point ids of a cell's corners, in our order, turned so that the cell is not inside out.
+// Point ids of a cell's corners, in our order.
 template <class Cell>
 using CornerIds = std::array<std::int32_t, Cell::kCorners>;
 
+// For every pattern of corner signs: the edges whose two ends differ, as a set.
 template <class Cell>
-constexpr auto kCrossedEdges = [] {  // by corner signs
+constexpr auto kCrossedEdges = [] {
     std::array<std::uint16_t, std::size_t{1} << Cell::kCorners> crossed{};
     for (std::size_t signs = 0; signs < crossed.size(); ++signs) {
         for (std::size_t e = 0; e < Cell::kEdges; ++e) {
@@ -86,8 +87,9 @@ constexpr auto kCrossedEdges = [] {  // by corner signs
     return crossed;
 }();
 
+// For every pattern of corner signs: the faces whose corners are not all alike, as a set.
 template <class Cell>
-constexpr auto kCrossedFaces = [] {  // by corner signs
+constexpr auto kCrossedFaces = [] {
     std::array<std::uint8_t, std::size_t{1} << Cell::kCorners> crossed{};
     for (std::size_t signs = 0; signs < crossed.size(); ++signs) {
         for (std::size_t f = 0; f < Cell::kFaces; ++f) {

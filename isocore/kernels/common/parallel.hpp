@@ -40,7 +40,8 @@ void parallel_for(int threads, std::size_t count, const Task& task) {
     if (failure) std::rethrow_exception(failure);
 }
 
-// Runs task(helper, 0) ... task(helper, count - 1), where each thread makes itself a helper first.
+// Runs task(helper, 0) ... task(helper, count - 1). Each thread calls make() once, for a helper that only it uses: its
+// scratch memory, for example.
 template <class Make, class Task>
 void parallel_for(int threads, std::size_t count, const Make& make, const Task& task) {
     std::atomic<std::size_t> next{0};

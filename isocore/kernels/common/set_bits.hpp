@@ -1,5 +1,5 @@
-// set_bits.hpp - Visits the set bits of several words, one after the other, without a branch for every word: whether
-// one has any, and how many, a processor cannot guess.
+// set_bits.hpp - Visits the set bits of several words in one loop. How many bits a word has is unpredictable, so that a
+// loop of its own for every word would cost a branch misprediction for nearly every word.
 #pragma once
 
 #include <array>
@@ -9,15 +9,16 @@
 
 namespace isocore {
 
-// A word whose bits are to be visited, and what tells whose it is.
+// A word whose bits are to be visited, and the caller's note of what the word stands for.
 template <class Tag>
 struct TaggedWord {
     std::uint64_t bits;
     Tag tag;
 };
 
-// Adds words that have bits to a list; a local variable, so that it can live in registers. What it added counts once it
-// is gone. There is room for one more than can be added.
+// Appends words to a list, and leaves zeros out without a branch: every word is written, but the end moves on only
+// behind one that has bits. Make it a local variable, so that its copy of the end lives in a register; the destructor
+// hands that end to the list. The list needs room for one word more than it may hold.
 template <class Tag>
 class WordAdder {
   public:
@@ -35,10 +36,10 @@ class WordAdder {
     TaggedWord<Tag>* end_;
 };
 
-// Calls visit(tag, bit) for each bit of the words, all of which have some. The one at the end is overwritten.
+// Calls visit(tag, bit) for each set bit of the words from `word` to `end`, none of which may be 0. Writes to *end too.
 template <class Tag, class Visit>
 void visit_bits(TaggedWord<Tag>* word, TaggedWord<Tag>* end, const Visit& visit) {
-    end->bits = 0;  // it will be read
+    end->bits = 0;  // the loop reads one word further than it visits
     std::uint64_t left = word->bits;
     while (word != end) {
         visit(word->tag, std::countr_zero(left));
@@ -48,7 +49,7 @@ void visit_bits(TaggedWord<Tag>* word, TaggedWord<Tag>* end, const Visit& visit)
     }
 }
 
-// So many words at most.
+// A list of at most kRoom words.
 template <class Tag, std::size_t kRoom>
 class SetBits {
   public:
@@ -59,7 +60,7 @@ class SetBits {
     void add(std::uint64_t bits, const Tag& tag) { WordAdder<Tag>{end_}(bits, tag); }
     bool full() const { return end_ == words_.data() + kRoom; }
 
-    // Calls visit(tag, bit) for each of them and forgets them.
+    // Calls visit(tag, bit) for each set bit of the words in the list, and empties the list.
     template <class Visit>
     void visit(const Visit& visit) {
         TaggedWord<Tag>* const end = end_;
@@ -68,7 +69,7 @@ class SetBits {
     }
 
   private:
-    std::array<TaggedWord<Tag>, kRoom + 1> words_;  // those that have bits, and one more to write to
+    std::array<TaggedWord<Tag>, kRoom + 1> words_;  // one more than may be held: see WordAdder
     TaggedWord<Tag>* end_ = words_.data();
 };
 

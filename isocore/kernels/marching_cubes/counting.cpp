@@ -1,5 +1,5 @@
-// The counting pass of W. Schroeder, R. Maynard, B. Geveci, "Flying Edges: A High-Performance Scalable Isocontouring
-// Algorithm", LDAV 2015, on sign bits: every sum is a popcount.
+// counting.cpp - The counting pass of W. Schroeder, R. Maynard, B. Geveci, "Flying Edges: A High-Performance Scalable
+// Isocontouring Algorithm", LDAV 2015, on sign bits: every sum is a popcount.
 #include "marching_cubes/counting.hpp"
 
 #include <array>
@@ -38,7 +38,7 @@ class Counter {
 
   private:
     std::size_t triangles_at_most(std::size_t j, std::size_t k) const {
-        const Rows rows(signs_, j, k);
+        const CellRow rows(signs_, j, k);
         std::size_t crossed = 0, active = 0;
         for (std::size_t w = 0; w < signs_.words; ++w) {
             const Word valid = signs_.valid(w, 1);
@@ -54,6 +54,7 @@ class Counter {
         return tubes_ ? crossed : crossed - 2 * active;
     }
 
+    // Pairs of a cell row's sample rows that edges along y and z join.
     static constexpr std::array<std::array<int, 2>, 4> kAcross{{{0, 1}, {2, 3}, {0, 2}, {1, 3}}};
     const SignGrid& signs_;
     std::vector<RowBase>& bases_;

@@ -30,7 +30,7 @@ class Drawer {
 
     // Writes the triangles of cell row (j, k) from `out` on, and returns the end. All before `limit` may be written to.
     std::int32_t* draw(std::size_t j, std::size_t k, std::int32_t* out, const std::int32_t* limit) {
-        const Rows rows(signs_, j, k);
+        const CellRow rows(signs_, j, k);
         const std::size_t row = j + signs_.dims[1] * k, above = row + signs_.dims[1];
         // Numbers of the first crossing, of this row of cells, along: x (4 rows), y (2 planes), z (2 rows).
         std::array<std::uint32_t, 8> base{bases_[row][0], bases_[row + 1][0], bases_[above][0], bases_[above + 1][0],
@@ -71,8 +71,8 @@ class Drawer {
     }
 
   private:
-    // Nearly every cell has at most five triangles. Writing always five, and keeping as many as there are, spares the
-    // processor a loop whose length it cannot foresee.
+    // Nearly every cell has at most five triangles. Writing always five, and keeping as many as there are, is a loop of
+    // fixed length: one of the cell's own length would end in a branch misprediction.
     template <class AnyCase>
     static std::int32_t* write(const AnyCase& drawn, const std::array<std::uint32_t, 12>& numbers, std::int32_t* out,
                                const std::int32_t* limit) {

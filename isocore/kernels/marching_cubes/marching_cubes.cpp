@@ -1,7 +1,8 @@
-// Follows W. E. Lorensen, H. E. Cline, "Marching Cubes: A High Resolution 3D Surface Construction Algorithm",
-// SIGGRAPH 1987, with faces decided as G. M. Nielson, B. Hamann, "The Asymptotic Decider: Resolving the Ambiguity in
-// Marching Cubes", IEEE Visualization 1991. Counting before writing, so that threads need no locks, is the idea of
-// W. Schroeder, R. Maynard, B. Geveci, "Flying Edges", LDAV 2015; here it runs on sign bits, 64 cells at a time.
+// marching_cubes.cpp - Follows W. E. Lorensen, H. E. Cline, "Marching Cubes: A High Resolution 3D Surface Construction
+// Algorithm", SIGGRAPH 1987, with faces decided as G. M. Nielson, B. Hamann, "The Asymptotic Decider: Resolving the
+// Ambiguity in Marching Cubes", IEEE Visualization 1991. Counting before writing, so that threads need no locks, is the
+// idea of W. Schroeder, R. Maynard, B. Geveci, "Flying Edges", LDAV 2015; here it runs on sign bits, 64 cells at a
+// time.
 #include "marching_cubes/marching_cubes.hpp"
 
 #include <algorithm>

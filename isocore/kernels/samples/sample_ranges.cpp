@@ -1,3 +1,4 @@
+// sample_ranges.cpp - One pass over the volume, at the speed of memory.
 #include "samples/sample_ranges.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 namespace isocore {
 namespace {
 
-// Lane by lane, because only so is every compiler free to compare many floats at once.
+// Sixteen independent minima and maxima. A single running minimum would be a chain in which every comparison waits for
+// the one before, and which compilers may not reorder where samples can be NaN.
 template <class Sample>
 class Range {
   public:
@@ -27,10 +29,10 @@ class Range {
     }
 
     Sample lowest() const {
-        return unknown() ? -std::numeric_limits<Sample>::infinity() : *std::min_element(lowest_, lowest_ + kLanes);
+        return has_nan() ? -std::numeric_limits<Sample>::infinity() : *std::min_element(lowest_, lowest_ + kLanes);
     }
     Sample highest() const {
-        return unknown() ? std::numeric_limits<Sample>::infinity() : *std::max_element(highest_, highest_ + kLanes);
+        return has_nan() ? std::numeric_limits<Sample>::infinity() : *std::max_element(highest_, highest_ + kLanes);
     }
 
   private:
@@ -39,14 +41,14 @@ class Range {
     void add(Sample sample, std::size_t lane) {
         lowest_[lane] = sample < lowest_[lane] ? sample : lowest_[lane];
         highest_[lane] = sample > highest_[lane] ? sample : highest_[lane];
-        unknown_[lane] |= sample != sample;
+        has_nan_[lane] |= sample != sample;
     }
-    bool unknown() const {
-        return std::any_of(unknown_, unknown_ + kLanes, [](int lane) { return lane != 0; });
+    bool has_nan() const {
+        return std::any_of(has_nan_, has_nan_ + kLanes, [](int lane) { return lane != 0; });
     }
 
     Sample lowest_[kLanes], highest_[kLanes];
-    int unknown_[kLanes] = {};
+    int has_nan_[kLanes] = {};
 };
 
 }  // namespace

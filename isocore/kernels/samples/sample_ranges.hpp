@@ -22,7 +22,7 @@ inline std::size_t range_count(const Dims& dims) {
     return 2 * (range_block(dims, dims[0] - 1, dims[1] - 1, dims[2] - 1) + 1);
 }
 
-// The lowest and the highest sample of each block, by turns. A block with a NaN goes from -infinity to infinity.
+// Two numbers per block, its lowest and its highest sample. A block with a NaN gets -infinity and infinity.
 template <class Sample>
 Array<Sample> sample_ranges(GridView<Sample> samples, int threads);
 

@@ -40,7 +40,7 @@ std::uint64_t gather(const std::uint8_t* flags) {
 #endif
 }
 
-// A separate function with restricted pointers: only so does every compiler vectorise the comparison.
+// A function of its own with restricted pointers (no aliasing): without them some compilers do not vectorise it.
 template <class Sample>
 void compare(const Sample* __restrict samples, std::uint8_t* __restrict flags, Sample lowest, Sample highest) {
     for (int n = 0; n < 64; ++n) {
@@ -64,7 +64,7 @@ void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>
     }
 }
 
-// The same with the ranges of the row's blocks.
+// The same, but where a block's range lies on one side of the isovalue its word is known without reading its samples.
 template <class Sample>
 void classify_row(const Sample* samples, std::size_t count, const Inside<Sample>& inside, const Sample* ranges,
                   std::uint64_t* words) {

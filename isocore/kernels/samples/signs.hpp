@@ -15,16 +15,16 @@
 
 namespace isocore {
 
-// What is beyond the row's last sample tells nothing.
+// One row of signs. The bits beyond its last sample are undefined.
 class SignRow {
   public:
     explicit SignRow(const std::uint8_t* bytes) : bytes_(bytes) {}
 
-    // 64 samples.
+    // Samples 64 w to 64 w + 63.
     std::uint64_t word(std::size_t w) const { return load_bits(bytes_ + 8 * w); }
-    // The same moved by one sample towards 0, so that bit i tells of sample i + 1.
+    // Samples 64 w + 1 to 64 w + 64: bit i is the next sample's after bit i of word(w).
     std::uint64_t next_word(std::size_t w) const { return word(w) >> 1 | std::uint64_t{bytes_[8 * w + 8]} << 63; }
-    // At least 57 samples from sample i on.
+    // Sample i as bit 0, and those after it: at least 57 in all.
     std::uint64_t from(std::size_t i) const { return load_bits(bytes_ + i / 8) >> i % 8; }
     bool at(std::size_t i) const { return bytes_[i / 8] >> i % 8 & 1; }
 
@@ -37,7 +37,7 @@ struct SignGrid {
 
     Dims dims;                  // samples per axis, padding included
     std::size_t pad;            // 0 or 1
-    std::size_t stride, words;  // per row: bytes, and words if they were rounded to these
+    std::size_t stride, words;  // per row: bytes, and the words of 64 signs that cover it
     Array<std::uint8_t> bytes;
 
     SignRow row(std::size_t j, std::size_t k) const { return SignRow(bytes.data() + stride * (j + dims[1] * k)); }

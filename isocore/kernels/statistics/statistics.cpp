@@ -62,7 +62,8 @@ Extent extent_of_chunk(const Sample* __restrict samples, std::size_t count) {
             static_cast<double>(*std::max_element(high, high + kLanes)), count - finite};
 }
 
-// Four tables in turn: a run of equal samples would otherwise wait for its own last count to be stored.
+// Four tables in turn: with one, a run of equal samples would load the same counter again right after it was stored,
+// and wait for the store each time.
 template <class Sample>
 void count_exact(const Sample* samples, std::size_t count, std::int64_t low, std::size_t bins, std::uint64_t* out) {
     constexpr std::size_t kTables = 4;

@@ -1,6 +1,6 @@
-// components.hpp - Which vertices hang together.
-// Every window of vertices is joined within itself, where threads need not agree on anything; what reaches from one
-// window into an earlier one is joined afterwards. A component's root is its earliest vertex.
+// components.hpp - The connected components of a mesh's vertices, by union-find.
+// Every window of vertices is joined within itself, by one thread and without locks; edges that reach from one window
+// into an earlier one are joined afterwards. A component's root is its earliest vertex.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +17,12 @@ class Components {
 
     explicit Components(std::size_t count) : parent_(count) {}
 
-    // Everything below is for vertices that have been started.
+    // Makes vertices begin .. end - 1 components of their own; before this no other call may name them.
     void start(std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) parent_[v] = static_cast<std::int32_t>(v);
     }
 
-    // For a vertex that nothing has joined yet: a join without a search.
+    // Joins a vertex that is still a component of its own with an earlier one, without a search for its root.
     void hang_below(std::int32_t vertex, std::int32_t earlier) { at(vertex) = at(earlier); }
 
     // Returns whether the two were apart.
@@ -37,7 +37,7 @@ class Components {
   private:
     std::int32_t& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
 
-    // Every step shortens the way for those who come later.
+    // Path splitting: every step shortens the path of later searches.
     std::int32_t root_of(std::int32_t v) {
         std::int32_t parent = at(v);
         while (parent != v) {

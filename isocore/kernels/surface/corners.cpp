@@ -35,7 +35,8 @@ void Corners<Offset>::look_at(std::size_t begin, std::size_t end) {
 template <class Offset>
 template <bool kAllInside>
 void Corners<Offset>::add_block(const std::int32_t* corners, const std::int32_t* last) {
-    // Local copies: a write into a slot could otherwise be one into a member.
+    // Local copies: the compiler must assume that a write into a slot may change a member (aliasing), and would load
+    // the members again each time.
     const auto size = static_cast<std::uint32_t>(counts_.size());
     const auto first = static_cast<std::uint32_t>(begin_);
     std::uint8_t* const counts = counts_.data();
@@ -58,7 +59,7 @@ void Corners<Offset>::add_block(const std::int32_t* corners, const std::int32_t*
     }
 }
 
-// Rare, and kept out of the loop above.
+// Kept out of the loop above, because it is rare.
 template <class Offset>
 void Corners<Offset>::spill(const Spilled& corner) {
     counts_[corner.index] = kSlots + 1;

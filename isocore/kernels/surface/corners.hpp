@@ -29,7 +29,7 @@ struct LinkEdge {
     Offset to;
 };
 
-// Room for eight edges; most vertices have fewer, then the rest is left as it was.
+// Room for eight edges. Most vertices have fewer, and then the other slots hold leftovers of no meaning.
 constexpr std::size_t kSlots = 8;
 template <class Offset>
 struct alignas(kSlots * sizeof(LinkEdge<Offset>)) Slots {
@@ -49,7 +49,7 @@ class Corners {
     // Collects the corners of vertices begin .. end - 1. Triangles with a repeated corner are left out.
     void look_at(std::size_t begin, std::size_t end);
 
-    // kSlots + 1 stands for any number that the slots cannot hold.
+    // How many corners a vertex has; kSlots + 1 stands for any number that the slots cannot hold.
     std::size_t count(std::size_t vertex) const { return counts_[vertex - begin_]; }
     // The first eight link edges of a vertex, or all, in the order of their triangles.
     const Slots<Offset>& slots(std::size_t vertex) const { return slots_[vertex - begin_]; }

@@ -62,7 +62,7 @@ bool LinkInspector::inspect(const Link& link, EdgeCounts& counts) {
     std::sort(uses_.begin(), uses_.end(), [](Use a, Use b) { return a.neighbour < b.neighbour; });
     const bool manifold = count_edges(counts);
 
-    // Every neighbour has one or two link edges then, so one connected piece is a ring or a fan.
+    // In a manifold link every neighbour has one or two edges, so that a single connected piece is a ring or a fan.
     std::size_t pieces = neighbours_.size();
     parents_.resize(pieces);
     for (std::size_t i = 0; i < pieces; ++i) parents_[i] = i;

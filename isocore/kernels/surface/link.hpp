@@ -17,7 +17,7 @@ struct EdgeCounts {
     std::size_t misoriented = 0;
 };
 
-// Looks at one link after the other; what it keeps is only room to work in.
+// Inspects one link after the other. Its members are scratch memory, kept to spare allocations.
 class LinkInspector {
   public:
     // Adds the edges around any vertex to `counts`; returns whether the link is one ring or one fan.

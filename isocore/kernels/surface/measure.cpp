@@ -17,13 +17,13 @@
 namespace isocore {
 namespace {
 
-// What a window of vertices sees.
+// What is counted in one window of vertices.
 struct Topology {
     EdgeCounts ends;
     std::size_t corners = 0;
     std::size_t used_vertices = 0;
     std::size_t nonmanifold_vertices = 0;
-    std::size_t joins = 0;                 // of vertices that were apart
+    std::size_t joins = 0;                 // that joined two components into one
     std::vector<Components::Pair> across;  // to be joined with a vertex of an earlier window
 };
 
@@ -46,7 +46,8 @@ void inspect_link(const Link& link, std::int32_t vertex, std::int32_t window_beg
     }
 }
 
-// Neighbours of a ring that follow each other are joined by the edge between them: one of each run is enough.
+// Joins a vertex with its earlier neighbours. Neighbours that follow each other in the ring share an edge, which joins
+// them already, so the first of each run of earlier ones is enough.
 template <class Offset>
 void join_ring(const Slots<Offset>& ring, std::uint32_t run_starts, std::int32_t vertex, std::int32_t window_begin,
                Components& components, Topology& sum) {

@@ -13,8 +13,8 @@ namespace isocore {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-// A corner that counts for less than this is not worth its seven samples; both ends of a crossed edge count for
-// four times as much.
+// A corner that weighs less than this is left out, which spares its seven samples. Both ends of a crossed edge weigh at
+// least four times as much (kClamp in crossing.hpp).
 constexpr double kWeightless = 1.0 / 4096;
 
 template <class Sample>

@@ -16,7 +16,7 @@
 
 namespace isocore {
 
-// One bit for each edge that starts at `place`, also for slots not in use.
+// Bit i says whether edge i starts at `place`; slots that are not in use get a bit as well.
 template <class Offset>
 std::uint32_t starting_at(const Slots<Offset>& link, Offset place) {
     std::uint32_t bits = 0;
@@ -24,7 +24,7 @@ std::uint32_t starting_at(const Slots<Offset>& link, Offset place) {
     return bits;
 }
 
-// One bit for each edge that leads to an earlier vertex, and above, for each that comes from one.
+// Bit i says whether edge i leads to an earlier vertex, and bit kSlots + i whether it starts at one.
 template <class Offset>
 std::uint32_t earlier_ends(const Slots<Offset>& link) {
     std::uint32_t bits = 0;
@@ -36,7 +36,7 @@ std::uint32_t earlier_ends(const Slots<Offset>& link) {
 }
 
 #if defined(__SSE2__) || defined(_M_X64)
-// A link of short offsets in registers of eight.
+// A link of 16-bit offsets: the eight edges' starts in one register, their ends in another.
 struct LinkRegisters {
     __m128i from;
     __m128i to;
@@ -79,7 +79,7 @@ inline std::uint32_t earlier_ends(const Slots<std::int16_t>& link) {
 // of a ninth one for "none", which stays where it is. Eight steps from the first edge then pass all `count` edges,
 // and nothing else, only if the way is a ring: from an edge that starts where an earlier one starts nothing comes
 // back, because only the earlier one is ever next. The loops run over all slots, used or not, because that costs
-// less than a branch predicted wrongly.
+// less than a branch misprediction.
 template <class Offset>
 bool is_plain_ring(const Slots<Offset>& link, std::size_t count) {
     if (count < 2 || count > kSlots) return false;
@@ -112,7 +112,8 @@ std::uint32_t starts_of_earlier_runs(const Slots<Offset>& ring, std::size_t coun
 }
 
 #if defined(__AVX2__)
-// How an edge names the one that is `step` slots further.
+// For the slot in every lane (0..7, then 4..7, 0..3), the two bytes by which a shuffle picks the slot `step` further
+// on.
 template <int step>
 __m256i numbers_after() {
     static constexpr auto bytes = [] {

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kBatch = 128;
 static_assert(kTrianglesPerBlock % kBatch == 0);
 
-// Sums of as many triangles at a time as a batch has, each lane on its own.
+// Sums over triangles, kBatch at a time, each lane with sums of its own.
 template <class Real>
 class Batch {
   public:
@@ -40,7 +40,8 @@ class Batch {
     }
 
   private:
-    // What is left of a batch is filled with triangles of no size.
+    // A batch that is not full is filled up with triangles whose corners are all zero; padding_ counts them, since they
+    // would pass for degenerate ones.
     void load(const MeshView<Real>& mesh, std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -53,7 +54,7 @@ class Batch {
             std::fill(row.begin() + static_cast<std::ptrdiff_t>(end - begin), row.end(), Real{0});
     }
 
-    // By halves: quick, and rounded less often than one after the other.
+    // Pairwise summation: fast in vectors, and with smaller rounding errors than a running sum.
     static double sum(std::array<double, kBatch>& lanes) {
         for (std::size_t half = kBatch / 2; half > 0; half /= 2) {
             for (std::size_t i = 0; i < half; ++i) lanes[i] += lanes[i + half];

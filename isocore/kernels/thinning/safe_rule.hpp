@@ -1,5 +1,6 @@
 // safe_rule.hpp - May a cell be removed? Let A be the part of its boundary that remaining cells still use. Removing it
-// is safe iff A is connected and not empty: then what remains keeps every component and every loop (thinning.md, 3).
+// is safe iff A is connected and not empty: then what remains keeps every component and every loop
+// (docs/proofs/thinning.md, section 3).
 #pragma once
 
 #include <array>
@@ -13,15 +14,17 @@ namespace isocore::thinning {
 
 using mesh::Mask;
 
-// A: corners and edges that other remaining cells touch, faces that a remaining cell shares.
+// The set A of a cell: its corners and edges that other remaining cells touch, and its faces that a remaining cell
+// shares.
 struct Used {
     Mask corners = 0, edges = 0, faces = 0;
-    // V - E + F. A connected A leaves 2 - euler() pieces of the cell's boundary free.
+    // The Euler number V - E + F of A. The cell's boundary is a sphere, so a connected A leaves 2 - euler() pieces
+    // free.
     int euler() const { return std::popcount(corners) - std::popcount(edges) + std::popcount(faces); }
 };
 
-// Is A connected and not empty? Every edge of a face and every end of an edge of A belongs to A, so corners and edges
-// tell.
+// Is A connected and not empty? A holds every edge of its faces and both ends of its edges, so corners and edges
+// suffice.
 template <class Cell>
 constexpr bool connected(Mask corners, Mask edges) {
     if (corners == 0) return false;
@@ -37,7 +40,7 @@ constexpr bool connected(Mask corners, Mask edges) {
     return reached == corners;
 }
 
-// The same by table for tetrahedra: bit c of entry e tells of corners c and edges e.
+// The same as a table for tetrahedra: bit c of entry e is the answer for the set c of corners and the set e of edges.
 inline constexpr auto kTetConnected = [] {
     std::array<std::uint16_t, 64> table{};
     for (Mask edges = 0; edges < 64; ++edges) {

@@ -1,5 +1,5 @@
-// grid_propagate.cpp - Isosurface propagation through the cells of a volume (propagate.cpp says how), drawn with the
-// cases and decisions of marching cubes, so that the triangles are the same.
+// grid_propagate.cpp - Isosurface propagation through the cells of a volume (mesh/propagate.cpp says how), drawn with
+// the cases and decisions of marching cubes, so that the triangles are the same.
 //
 // Every crossed edge has one owner: the cell whose lowest corner it starts at, or the nearest one where the volume
 // ends. All cells around a crossed edge are visited, the owner with them, so a vertex's number is its owner's first
@@ -198,8 +198,8 @@ class GridDrawing {
         out[axis] += t;
     }
 
-    // The vertex on a crossed edge: found with its owner, which lies up along the axes that the edge is away from the
-    // lowest corner, as far as there are cells.
+    // The number of the vertex on a crossed edge. Its owner is the cell one step up along every axis on which the edge
+    // lies at this cell's high side, except where there is no further cell.
     int32_t vertex_on(size_t n, const Dims& cell, Mask last_axes, size_t edge) const {
         const Mask up = Hex::kShape.ends[edge][0] & ~last_axes;
         if (up == 0) return numbered(n, cell, edge);

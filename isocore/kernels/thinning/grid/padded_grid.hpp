@@ -53,8 +53,7 @@ struct PaddedGrid {
     }
     Sample sample(const Dims& at) const { return samples.at(at[0] - pad, at[1] - pad, at[2] - pad); }
 
-    // What the inside rule makes of a sample: it grows towards the inside, and what is always outside is minus
-    // infinity.
+    // A sample as the inside rule orders it: higher is more inside, and what is always outside is minus infinity.
     double height(const Dims& at) const {
         if (pad && is_padding(at)) return -std::numeric_limits<double>::infinity();
         const Sample there = sample(at);

@@ -18,14 +18,14 @@ using mesh::Tet;
 using std::int32_t;
 using std::size_t;
 
-// Edges between the same two points get one number across all copies and both kinds of cells.
+// One number for all edges between the same two points, be they copies of each other or edges of both kinds of cells.
 class EdgeNumbers {
   public:
     explicit EdgeNumbers(size_t points) : start_(points + 1) {}
 
-    // Counts, then places; both in the same order of parts.
+    // Takes in the edge copies of one part: first those of the tetrahedra, which are part 0, then the hexahedra's.
     template <class Cell>
-    void count(const Gluing<Cell>& gluing) {
+    void add(const Gluing<Cell>& gluing) {
         ends_.resize(first_.empty() ? gluing.edge_count : ends_.size() + gluing.edge_count);
         first_.push_back(ends_.size() - gluing.edge_count);
         for (size_t n = 0; n < gluing.edges.size(); ++n) {
@@ -147,8 +147,8 @@ Index build(const Field<Value>& field, const Cells& cells) {
     std::vector<double> heights(points.points.size());
     for (size_t n = 0; n < heights.size(); ++n) heights[n] = field.height(points.points[n]);
     EdgeNumbers numbers(field.size);
-    numbers.count(tets);
-    numbers.count(hexes);
+    numbers.add(tets);
+    numbers.add(hexes);
     numbers.merge();
     Index index;
     std::vector<bool> edge_seen(numbers.count());

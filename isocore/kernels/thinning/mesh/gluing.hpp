@@ -22,11 +22,11 @@ template <class Cell>
 struct Gluing {
     std::size_t cells = 0;
     Array<std::int32_t> corners;  // kCorners point ids per cell
-    Array<std::int32_t> twins;    // per face: kFaces * cell + face across, or -1 - the number of the boundary face
+    Array<std::int32_t> twins;    // per face: kFaces * cell + face on its other side, or -1 - number of boundary face
     Array<std::int32_t> copies;   // per corner: its vertex copy
     Array<std::int32_t> edges;    // per edge of a cell: its edge copy
     std::size_t copy_count = 0, edge_count = 0, boundary_faces = 0;
-    Array<std::int32_t> shell;  // per boundary face: a number its connected piece of boundary has in common
+    Array<std::int32_t> shell;  // per boundary face: the lowest face of its connected piece of boundary
     std::size_t shells = 0;
     Oddities oddities;
 

@@ -29,7 +29,7 @@ using std::size_t;
 template <class Cell, class Value>
 class Drawing {
   public:
-    // Lays the blocks of a walk one behind the other, behind what is drawn before them.
+    // Gives every block of a walk its place in the output: a prefix sum that starts at `before`, and is left there.
     Drawing(const Walk<Cell, Value>& walk, const Field<Value>& field, const IndexView& index, double isovalue,
             Amount& before)
         : walk_(walk), field_(field), index_(index), isovalue_(isovalue) {
@@ -59,13 +59,13 @@ class Drawing {
     void place_vertices(size_t task, Mesh<Coordinate>& mesh) {
         collect(task);
         size_t vertex = tasks_[task].before.vertices;
-        const auto expect = [&](size_t, const int32_t* corners) {
+        const auto prefetch = [&](size_t, const int32_t* corners) {
             for (size_t n = 0; n < Cell::kCorners; ++n) {
                 ISOCORE_PREFETCH(field_.values + corners[n]);
                 ISOCORE_PREFETCH(field_.point(corners[n]));
             }
         };
-        for_each(task, expect, [&](size_t n, const int32_t* corners) {
+        for_each(task, prefetch, [&](size_t n, const int32_t* corners) {
             const Mask signs = walk_.signs(corners);
             signs_[n] = static_cast<std::uint8_t>(signs);
             for (Mask left = walk_.owned(corners, signs); left != 0; left &= left - 1, ++vertex) {
@@ -85,12 +85,12 @@ class Drawing {
         int32_t* out = mesh.triangles.data() + 3 * tasks_[task].before.triangles;
         size_t middle = first_middle + tasks_[task].before.middles;
         bool collapsed = false;
-        const auto expect = [&](size_t n, const int32_t* corners) {
+        const auto prefetch = [&](size_t n, const int32_t* corners) {
             for (Mask left = mesh::kCrossedEdges<Cell>[signs_[n]]; left != 0; left &= left - 1) {
                 ISOCORE_PREFETCH(&vertex_on(corners, static_cast<size_t>(std::countr_zero(left))));
             }
         };
-        for_each(task, expect, [&](size_t n, const int32_t* corners) {
+        for_each(task, prefetch, [&](size_t n, const int32_t* corners) {
             const auto& drawn = walk_.drawn(corners, signs_[n]);
             for (size_t corner = 0; corner < 3u * drawn.triangles; ++corner) {
                 const size_t edge = drawn.edges[corner];
@@ -115,15 +115,15 @@ class Drawing {
         Amount before;
     };
 
-    // Calls visit(place, record) for the visited cells of a block, in order, and expect(place, record) some cells
-    // ahead.
-    template <class Expect, class Visit>
-    void for_each(size_t task, const Expect& expect, const Visit& visit) const {
+    // Calls visit(place, record) for the visited cells of a block, in order, and prefetch(place, record) some cells
+    // ahead of it.
+    template <class Prefetch, class Visit>
+    void for_each(size_t task, const Prefetch& prefetch, const Visit& visit) const {
         constexpr size_t kRecordsAhead = 12, kValuesAhead = 6;
         const size_t end = tasks_[task].first + tasks_[task].cells;
         for (size_t n = tasks_[task].first; n < end; ++n) {
-            if (n + kRecordsAhead < end) walk_.expect(cells_[n + kRecordsAhead]);
-            if (n + kValuesAhead < end) expect(n + kValuesAhead, walk_.record(cells_[n + kValuesAhead]));
+            if (n + kRecordsAhead < end) walk_.prefetch_record(cells_[n + kRecordsAhead]);
+            if (n + kValuesAhead < end) prefetch(n + kValuesAhead, walk_.record(cells_[n + kValuesAhead]));
             visit(n, walk_.record(cells_[n]));
         }
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned kBits = 10;  // per axis
 constexpr double kSteps = 1u << kBits;
 
-// Ten bits with two gaps between each.
+// The ten bits of a number with two zeros after each: three such numbers, shifted by 0, 1, 2, make a Morton key.
 constexpr std::array<std::uint32_t, 1u << kBits> kSpread = [] {
     std::array<std::uint32_t, 1u << kBits> spread{};
     for (std::uint32_t n = 0; n < spread.size(); ++n) {
@@ -39,7 +39,7 @@ struct Box {
             scale[axis] = kSteps / std::max(high[axis] - low[axis], std::numeric_limits<double>::min());
     }
 
-    // Where a place lies among the steps of an axis; places that are not numbers lie at its start.
+    // The step of an axis that a coordinate lies in, from 0 to kSteps - 1; 0 for NaN.
     std::uint32_t step(double place, std::size_t axis) const {
         const double steps = (place - low[axis]) * scale[axis];
         return steps > 0 ? static_cast<std::uint32_t>(std::min(steps, kSteps - 1)) : 0;

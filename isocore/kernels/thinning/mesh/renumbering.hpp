@@ -1,5 +1,5 @@
-// renumbering.hpp - Cells and points in an order that keeps neighbours close in memory, since both the thinning and the
-// walk are bound by it: cells along a Morton curve through their middles, points by their first cell.
+// renumbering.hpp - Cells and points in an order that keeps neighbours close in memory, since memory latency
+// bounds both the thinning and the walk: cells along a Morton curve through their middles, points by their first cell.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// shared_cells.hpp - Cells that several threads still have to walk through. A thread with none left waits here; the
-// others ask now and then whether anyone is `wanted`, and give away half of theirs. Who gets which cells is left open.
+// shared_cells.hpp - Work sharing for the walk. A thread without cells waits here; the others look now and then whether
+// cells are `wanted`, and give half of theirs away. Which thread gets which cells is left open.
 #pragma once
 
 #include <atomic>
@@ -46,8 +46,7 @@ class SharedCells {
         SharedCells& cells;
     };
 
-    // A walk takes a millisecond or so, less than it takes to wake a thread: waiting ones stay awake, but let others
-    // run.
+    // Waiting is a spin loop that yields: a whole walk may take less time than waking a thread that sleeps.
     bool take(Array<std::int32_t>& lot) {
         waiting_.fetch_add(1, std::memory_order_relaxed);
         for (;; std::this_thread::yield()) {

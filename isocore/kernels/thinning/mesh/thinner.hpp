@@ -1,7 +1,8 @@
 // thinner.hpp - From all cells of a glued mesh to its extrema skeleton.
-// heights: one per point, where what is not finite is minus infinity. What remains is connected within every component
-// of the mesh, holds every local minimum and maximum, and carries every loop; so it meets every component of every
-// isosurface. Ties are broken by point id. Linear in the number of cells.
+// heights: one per point, minus infinity where the value is not finite. What remains is connected within every
+// component of the mesh, holds every local minimum and maximum, and carries every loop; so it meets every component of
+// every isosurface (proved in docs/proofs/thinning.md, section 2). Ties are broken by point id. Linear in the number of
+// cells.
 #pragma once
 
 #include <array>

@@ -29,7 +29,7 @@
 
 namespace isocore::thinning {
 
-// What cells draw; or, where it says so, how much is drawn before them.
+// How much some cells draw; or, as a prefix sum, how much all cells before them draw.
 struct Amount {
     std::size_t cells = 0, vertices = 0, middles = 0, triangles = 0;
 
@@ -116,11 +116,11 @@ class Walk {
             isovalue_);
     }
 
-    void expect(std::int32_t cell) const {
+    void prefetch_record(std::int32_t cell) const {
         ISOCORE_PREFETCH(record(cell));
         ISOCORE_PREFETCH(record(cell) + kRecord<Cell> - 1);
     }
-    void expect_values(std::int32_t cell) const {
+    void prefetch_values(std::int32_t cell) const {
         for (std::size_t n = 0; n < Cell::kCorners; ++n) ISOCORE_PREFETCH(field_.values + record(cell)[n]);
     }
 
@@ -130,8 +130,8 @@ class Walk {
     // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed.
     void follow(Array<std::int32_t>& cells, SharedCells* shared, std::vector<Amount>& drawn_by_block) {
         for (std::size_t head = 0; head < cells.size(); ++head) {
-            if (head + kRecordsAhead < cells.size()) expect(cells[head + kRecordsAhead]);
-            if (head + kValuesAhead < cells.size()) expect_values(cells[head + kValuesAhead]);
+            if (head + kRecordsAhead < cells.size()) prefetch_record(cells[head + kRecordsAhead]);
+            if (head + kValuesAhead < cells.size()) prefetch_values(cells[head + kValuesAhead]);
             step(cells[head], cells, shared == nullptr, drawn_by_block);
             if (shared == nullptr || cells.size() - head < kWorthSharing || !shared->wanted()) continue;
             const auto half = cells.end() - static_cast<std::ptrdiff_t>((cells.size() - head) / 2);
@@ -146,7 +146,8 @@ class Walk {
         const auto& triangles = drawn(corners, mask);
         drawn_by_block[static_cast<std::size_t>(cell) / kBlock] +=
             {1, static_cast<std::size_t>(std::popcount(owned(corners, mask))), triangles.middles, triangles.triangles};
-        // Which neighbours are new cannot be foreseen: one branch for all of them.
+        // Which neighbours are new is unpredictable: one branch for all of them is mispredicted less often than one
+        // each.
         std::array<std::int32_t, Cell::kFaces> next;
         mesh::Mask fresh = 0;
         for (std::size_t n = 0; n < Cell::kFaces; ++n) {
@@ -166,7 +167,7 @@ class Walk {
                1;
     }
 
-    // Was the cell not visited before?
+    // Marks a cell as visited; returns whether it was not. Without other threads no atomic exchange is needed.
     bool mark(std::int32_t cell, bool alone) {
         std::atomic<std::uint64_t>& word = visited_[static_cast<std::size_t>(cell) / kWord];
         const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(cell) % kWord,
