@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/climb.hpp"
 #include "climbing/boxes/dike.hpp"
+#include "climbing/climb.hpp"
 #include "samples/sample_ranges.hpp"
 #include "small_volumes.hpp"
 

@@ -21,7 +21,7 @@ struct Field {
 
     const double* point(std::int32_t id) const { return points + 3 * static_cast<std::size_t>(id); }
     Value value(std::int32_t id) const { return values[static_cast<std::size_t>(id)]; }
-    // What the inside rule makes of a value: whatever is not finite lies below every isovalue.
+    // A value as the inside rule orders it: whatever is not finite lies below every isovalue.
     double height(std::int32_t id) const {
         const Value value_there = value(id);
         return std::isfinite(value_there) ? static_cast<double>(value_there) : -std::numeric_limits<double>::infinity();

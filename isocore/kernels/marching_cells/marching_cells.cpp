@@ -155,7 +155,7 @@ class Joiner {
     std::vector<Places> places_;
 };
 
-// Cells that name a point twice draw triangles with two equal corners.
+// Removes triangles with two equal corners, which are drawn by cells that name a point twice.
 void drop_collapsed(Array<std::int32_t>& triangles) {
     std::size_t end = 0;
     for (std::size_t n = 0; n < triangles.size(); n += 3) {

@@ -75,7 +75,7 @@ class Corners {
     std::vector<Spilled> spilled_;  // what the slots cannot hold, by vertex
 };
 
-// How many vertices to look at at once: few where neighbours have neighbouring indices, as in a fresh surface,
+// The number of vertices in a window: few where neighbours have neighbouring indices, as in a fresh surface,
 // and many where every window would have to look through the whole mesh.
 std::size_t window_size(const std::vector<VertexRange>& blocks, std::size_t vertex_count, int threads);
 

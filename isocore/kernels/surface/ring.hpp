@@ -75,11 +75,11 @@ inline std::uint32_t earlier_ends(const Slots<std::int16_t>& link) {
 // True if the link is one ring that all triangles run along in one direction: then every edge at the vertex has
 // exactly two triangles, in opposite directions. False also for links that the slots cannot hold.
 //
-// Which link edge comes after which is kept in one word, six bits each: six times the number of the next edge, or
-// of a ninth one for "none", which stays where it is. Eight steps from the first edge then pass all `count` edges,
-// and nothing else, only if the way is a ring: from an edge that starts where an earlier one starts nothing comes
-// back, because only the earlier one is ever next. The loops run over all slots, used or not, because that costs
-// less than a branch misprediction.
+// The link is followed by table look-up in one word (SWAR): six bits for every edge hold six times the number of the
+// next edge, which is the shift that reaches its own entry, or that of a ninth edge for "none", which leads to itself.
+// Eight steps from the first edge then pass all `count` edges, and nothing else, only if the way is a ring: from an
+// edge that starts where an earlier one starts nothing comes back, because only the earlier one is ever next. The loops
+// run over all slots, used or not, because that costs less than a branch misprediction.
 template <class Offset>
 bool is_plain_ring(const Slots<Offset>& link, std::size_t count) {
     if (count < 2 || count > kSlots) return false;

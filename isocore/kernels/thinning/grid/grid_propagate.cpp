@@ -184,7 +184,7 @@ class GridDrawing {
         }
     }
 
-    // As edge_vertices.hpp places them, but by edge instead of by row.
+    // Places the vertex as samples/sample_reader.cpp does for marching cubes, so that its bytes are the same.
     void write_vertex(const Dims& cell, size_t edge, double* out) const {
         const size_t corner = Hex::kShape.ends[edge][0], axis = edge / 4;
         const Dims from{cell[0] + (corner & 1), cell[1] + (corner >> 1 & 1), cell[2] + (corner >> 2)};

@@ -169,7 +169,9 @@ class GridThinner {
         const Used left = used(there);
         if (left.euler() != 1 || !is_connected(Hex{}, left) || holds_last_extremum(cell, ~left.corners & 0xff)) return;
         state_[cell] = kGone;
-        std::uint32_t changed = 0;  // face neighbours, and the last cells at an edge or a corner
+        // The neighbours that the removal may have made removable: those across a face, and whichever is now the only
+        // cell left at an edge or a corner.
+        std::uint32_t changed = 0;
         for (const std::uint32_t cells : kAround.faces) changed |= there & cells;
         for (const std::uint32_t cells : kAround.edges)
             changed |= std::has_single_bit(there & cells) ? there & cells : 0;

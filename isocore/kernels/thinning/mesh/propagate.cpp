@@ -142,7 +142,7 @@ class Drawing {
     std::vector<Task> tasks_;
 };
 
-// Cells that name a point twice draw triangles with two equal corners.
+// Removes triangles with two equal corners, which are drawn by cells that name a point twice.
 void drop_collapsed(Array<int32_t>& triangles) {
     size_t end = 0;
     for (size_t n = 0; n < triangles.size(); n += 3) {
