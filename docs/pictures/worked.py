@@ -79,9 +79,9 @@ def windows() -> str:
     box, rows = half_block(block), []
     for (k, j), edges in sorted(rows_of(block, box).items()):
         for_kept, for_dropped = (window([(a, i) for a, i, _, is_kept in edges if is_kept == side]) for side in (True, False))
-        bits = ", ".join(f"{'xyz'[a]} {i} (bit {21 * a + i})" for a, i, _, _ in edges)
+        bits = ", ".join(f"{'xyz'[a]} {i}: {21 * a + i}" for a, i, _, _ in edges)
         rows.append([f"k = {k}, j = {j}", f"`{for_kept:#x}`", f"`{for_dropped:#x}`", bits])
-    return _table(["row", "kept", "dropped", "edges: axis, i"], rows)
+    return _table(["row", "kept", "dropped", "edges, as axis i: bit"], rows)
 
 
 def counted_boxes() -> str:
