@@ -107,7 +107,7 @@ class Block:
 
     @staticmethod
     def corners_cut_a_disk(signs: Signs) -> bool:
-        """Do the corners alone show one loop and no ambiguous face? Iff either side's are joined by edges of the box."""
+        """Do the corners alone show one loop and no ambiguous face? Iff each side's are joined by edges of the box."""
         corners = signs[np.ix_((0, -1), (0, -1), (0, -1))]
         for side in (True, False):
             members = [c for c in itertools.product((0, 1), repeat=3) if corners[c] == side]
@@ -128,7 +128,7 @@ class Block:
     # partition: which boxes?
 
     def cost(self, box: Box, axis: int) -> int:
-        """What halving a box along an axis costs, one halving further where a half must be split and the box is large."""
+        """What halving a box along an axis costs; in a large box, halves that must be split count their own halves."""
         total = 0
         for half in halves(box, axis):
             further = self.price(half) == SPLIT and np.prod([length(k) for k in box]) >= WORTH_A_LOOK

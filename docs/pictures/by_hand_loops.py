@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import numpy.typing as npt
-
 from by_hand import Block, Box, Edge, axes, ends
 
 Triangle = tuple[int, int, int]  # vertex numbers, counter-clockwise seen from outside
@@ -24,7 +23,9 @@ def on_surface(block: Block, box: Box) -> list[int]:
     """The crossings on the surface of a box, by number."""
     found = []
     for number, (axis, place) in enumerate(block.crossings):
-        within = all(low <= place[a] <= high - (a == axis) for a, (low, high) in enumerate(ends(box, a) for a in range(3)))
+        within = all(
+            low <= place[a] <= high - (a == axis) for a, (low, high) in enumerate(ends(box, a) for a in range(3))
+        )
         if within and faces(box, (axis, place)):
             found.append(number)
     return found
@@ -130,7 +131,8 @@ def cut(block: Block, box: Box) -> list[Triangle]:
     @cache
     def best(i: int, j: int) -> tuple[float, tuple[tuple[int, int, int], ...]]:
         """Of the part from corner i to corner j: what it costs, and its triangles."""
-        cost, drawn = (0.0, ()) if j - i < 2 else (float("inf"), ())
+        cost = 0.0 if j - i < 2 else float("inf")
+        drawn: tuple[tuple[int, int, int], ...] = ()
         for k in range(i + 1, j):
             (before, left), (after, right) = best(i, k), best(k, j)
             price = before + after + area(i, k, j) + side(i, k) + side(k, j)
@@ -180,4 +182,3 @@ def neighbours(block: Block, box: Box, face: Face) -> list[Box]:
             if a != axis
         )
     ]
-

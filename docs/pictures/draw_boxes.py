@@ -50,18 +50,37 @@ def pyramid() -> Sheet:
             sheet.text((left + 34 + n * w + w / 2, top - 8), name, anchor="middle", size=11, ink=GREY)
         for n, (name, words) in enumerate(rows):
             sheet.text((left + 28, top + n * h + 18), name, anchor="end", size=11, ink=GREY)
-            sheet.cells(left + 34, top + n * h, [named(word) for word in words], [fill[bool(word)] for word in words], w=w, h=h)
+            sheet.cells(
+                left + 34, top + n * h, [named(word) for word in words], [fill[bool(word)] for word in words], w=w, h=h
+            )
 
     ks, labels = [f"k={k}" for k in range(N + 1)], list(range(2 * N - 1, 0, -1))
-    grid(20, "1  by lign: rows j, k", [(f"j={j}", [again_x(block, j, k) for k in range(N + 1)]) for j in range(N, -1, -1)], ks)
+    grid(
+        20,
+        "1  by lign: rows j, k",
+        [(f"j={j}", [again_x(block, j, k) for k in range(N + 1)]) for j in range(N, -1, -1)],
+        ks,
+    )
     lines = over_y(block)
     grid(290, "2  OR along y: dikes of y", [(f"y {y}", lines[y]) for y in labels], ks)
-    grid(570, "3  OR along z: all pairs of dikes", [(f"y {y}", [up_one_axis(lines[y])[z] for z in range(1, 2 * N)]) for y in labels],
-         [f"z {z}" for z in range(1, 2 * N)])
+    grid(
+        570,
+        "3  OR along z: all pairs of dikes",
+        [(f"y {y}", [up_one_axis(lines[y])[z] for z in range(1, 2 * N)]) for y in labels],
+        [f"z {z}" for z in range(1, 2 * N)],
+    )
     sheet.arrow((234, 160), (286, 160), GREY)
     sheet.arrow((492, 160), (566, 160), GREY)
-    sheet.text((20, 290), "In each square: the dikes along x, by label, that are crossed more than once somewhere. A unit takes the OR of its two samples,")
-    sheet.text((20, 310), "any other dike the OR of its halves; so a mark of one lign reaches every box that contains it, and no box is looked at twice.")
+    sheet.text(
+        (20, 290),
+        "In each square: the dikes along x, by label, that are crossed more than once somewhere. "
+        "A unit takes the OR of its two samples,",
+    )
+    sheet.text(
+        (20, 310),
+        "any other dike the OR of its halves; so a mark of one lign reaches every box that contains it, "
+        "and no box is looked at twice.",
+    )
     return sheet
 
 
@@ -87,7 +106,12 @@ def prices() -> Sheet:
                 least = min(sum(way) for way in ways.values())
                 sheet.text((x + 80, top + 16), "its own halves would cost", size=11, ink=GREY)
                 for m, (a, way) in enumerate(ways.items()):
-                    sheet.text((x + 80 + 84 * m, top + 38), f"{AXES[a]}: {way[0]} + {way[1]} = {sum(way)}", size=11, bold=sum(way) == least)
+                    sheet.text(
+                        (x + 80 + 84 * m, top + 38),
+                        f"{AXES[a]}: {way[0]} + {way[1]} = {sum(way)}",
+                        size=11,
+                        bold=sum(way) == least,
+                    )
                 sheet.text((x + 80, top + 60), f"one halving further it counts {least}", size=12)
             else:
                 sheet.text((x + 80, top + 40), "counts as it is", size=12, ink=GREY)
@@ -95,7 +119,11 @@ def prices() -> Sheet:
         sheet.text((806, top + 34), f"= {choice.costs[axis]}", bold=True)
         if best:
             sheet.text((806, top + 52), "chosen", ink=EDGE, bold=True, size=12)
-    sheet.text((20, 342), "Least cost first, then the longest dike, then the lowest axis. 2 is one box, so 5 is two boxes and a half.", ink=GREY)
+    sheet.text(
+        (20, 342),
+        "Least cost first, then the longest dike, then the lowest axis. 2 is one box, so 5 is two boxes and a half.",
+        ink=GREY,
+    )
     return sheet
 
 
@@ -126,11 +154,18 @@ def partition() -> Sheet:
             sheet.line((x - 15, y + 10), (x, y + 10), GREY)
             sheet.line((x - 15, y - 4), (x - 15, y + 10), GREY)
         sheet.rect(x, y, 104, 20, fill, INK)
-        sheet.text((x + 52, y + 14.5), words, anchor="middle", size=12, ink="#fff" if box in shown else INK, bold=box in shown)
+        sheet.text(
+            (x + 52, y + 14.5), words, anchor="middle", size=12, ink="#fff" if box in shown else INK, bold=box in shown
+        )
         sheet.text((x + 112, y + 14.5), fate, size=12, ink=INK if box in shown else GREY)
     cells = sum(map(is_cell, block.boxes))
-    sheet.text((20, 468), f"{len(block.boxes)} boxes: {len(block.boxes) - cells} of several cells, {cells} single cells. "
-               "In each: its samples along x, y and z, ends included. On the right they are moved apart.", ink=GREY, size=12)
+    sheet.text(
+        (20, 468),
+        f"{len(block.boxes)} boxes: {len(block.boxes) - cells} of several cells, {cells} single cells. "
+        "In each: its samples along x, y and z, ends included. On the right they are moved apart.",
+        ink=GREY,
+        size=12,
+    )
     view = View((500, 420), 54)
     for box in sorted(block.boxes, key=lambda b: (-sum(ends(b, 1)), sum(ends(b, 0)), sum(ends(b, 2)))):
         move = exploded(block, box)
@@ -156,9 +191,38 @@ def word_layouts() -> Sheet:
             if high > low:
                 sheet.text((x + 2, y + 44), str(high), size=10, ink=GREY)
 
-    ruler(24, "Piece, 64 bits", [("", 55, 63), ("depth", 51, 54), ("axes", 48, 50), ("length z", 40, 47), ("length y", 32, 39), ("length x", 24, 31),
-                                 ("low z", 16, 23), ("low y", 8, 15), ("low x", 0, 7)], 64)
+    ruler(
+        24,
+        "Piece, 64 bits",
+        [
+            ("", 55, 63),
+            ("depth", 51, 54),
+            ("axes", 48, 50),
+            ("length z", 40, 47),
+            ("length y", 32, 39),
+            ("length x", 24, 31),
+            ("low z", 16, 23),
+            ("low y", 8, 15),
+            ("low x", 0, 7),
+        ],
+        64,
+    )
     ruler(104, "Edge, 32 bits", [("axis", 24, 31), ("k", 16, 23), ("j", 8, 15), ("i", 0, 7)], 32)
-    ruler(184, "Window, 63 bits", [("", 63, 63), ("edges along z, by i", 42, 62), ("edges along y, by i", 21, 41), ("edges along x, by i", 0, 20)], 64)
-    sheet.text((20, 252), "Highest bit on the left, as numbers are written. The drawings of rows have bit 0 on the left, as samples lie.", ink=GREY, size=12)
+    ruler(
+        184,
+        "Window, 63 bits",
+        [
+            ("", 63, 63),
+            ("edges along z, by i", 42, 62),
+            ("edges along y, by i", 21, 41),
+            ("edges along x, by i", 0, 20),
+        ],
+        64,
+    )
+    sheet.text(
+        (20, 252),
+        "Highest bit on the left, as numbers are written. The drawings of rows have bit 0 on the left, as samples lie.",
+        ink=GREY,
+        size=12,
+    )
     return sheet

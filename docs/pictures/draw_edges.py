@@ -16,7 +16,9 @@ KEPT, DROPPED = "#2b5f92", "#fff"
 
 def half_block(block: Block) -> Box:
     """The largest box: the one that the worked examples follow."""
-    return max(large_boxes(block), key=lambda box: int(np.prod([high - low for low, high in (ends(box, a) for a in range(3))])))
+    return max(
+        large_boxes(block), key=lambda box: int(np.prod([high - low for low, high in (ends(box, a) for a in range(3))]))
+    )
 
 
 def rows_of(block: Block, box: Box) -> dict[tuple[int, int], list[tuple[int, int, int, bool]]]:
@@ -42,7 +44,9 @@ def box_edges() -> Sheet:
     for axis in range(3):
         x = left + axis * 150
         sheet.text((x + 2.5 * w, 24), f"along {AXES[axis]}", anchor="middle", bold=True)
-        sheet.text((x + 2.5 * w, 42), f"bits {WINDOW * axis} ... {WINDOW * axis + N}", anchor="middle", size=11, ink=GREY)
+        sheet.text(
+            (x + 2.5 * w, 42), f"bits {WINDOW * axis} ... {WINDOW * axis + N}", anchor="middle", size=11, ink=GREY
+        )
     for n, ((k, j), edges) in enumerate(sorted(rows.items())):
         y = 52 + 24 * n
         sheet.text((left - 10, y + 15), f"k={k} j={j}", anchor="end", size=12)
@@ -54,8 +58,13 @@ def box_edges() -> Sheet:
                 sheet.rect(left + axis * 150 + i * w, y, w, 20, fill, GREY)
                 for number, is_kept in here:
                     sheet.rect(left + axis * 150 + i * w, y, w, 20, KEPT if is_kept else "#f3d9b8", GREY)
-                    sheet.text((left + axis * 150 + (i + 0.5) * w, y + 14), str(number), anchor="middle", size=11,
-                               ink="#fff" if is_kept else INK)
+                    sheet.text(
+                        (left + axis * 150 + (i + 0.5) * w, y + 14),
+                        str(number),
+                        anchor="middle",
+                        size=11,
+                        ink="#fff" if is_kept else INK,
+                    )
     bottom = 52 + 24 * len(rows)
     sheet.rect(left, bottom + 14, w, 18, KEPT, GREY)
     sheet.text((left + 28, bottom + 28), "kept: a vertex")
@@ -65,8 +74,8 @@ def box_edges() -> Sheet:
     sheet.text((left + 378, bottom + 28), "beyond the box")
     sheet.text((left, bottom + 52), "The numbers are those of the crossings in the layout.", size=11, ink=GREY)
     view = View((578, 340), 50)
-    low, high = ([ends(box, a)[n] for a in range(3)] for n in (0, 1))
-    view.box(sheet, low, high, BOXES[len(block.boxes) - 1], 2)
+    corners = [[ends(box, a)[n] for a in range(3)] for n in (0, 1)]
+    view.box(sheet, corners[0], corners[1], BOXES[len(block.boxes) - 1], 2)
     for edges in rows.values():
         for _, _, number, is_kept in edges:
             at = view(list(block.place(block.crossings[number])))
@@ -87,9 +96,16 @@ def layout() -> Sheet:
         sheet.text((x + w / 2, y + 39), f"{AXES[axis]} {i}{j}{k}", anchor="middle", size=11, ink=GREY)
         if is_kept:
             sheet.text((x + w / 2, y + 57), f"v{block.number(number)}", anchor="middle", size=12, bold=True)
-    sheet.text((22, 264), "Above each bit its crossing's number; below it axis and lower sample ijk, then the vertex that it is.")
+    sheet.text(
+        (22, 264),
+        "Above each bit its crossing's number; below it axis and lower sample ijk, then the vertex that it is.",
+    )
     example = [n for n in range(len(block.crossings)) if block.kept[n]][11]
-    sheet.text((22, 286), f"Rank query: crossing {example} is kept, and {block.number(example)} of the bits before it are set: it is vertex {block.number(example)}.")
+    sheet.text(
+        (22, 286),
+        f"Rank query: crossing {example} is kept, and {block.number(example)} of the bits before it are set: "
+        f"it is vertex {block.number(example)}.",
+    )
     return sheet
 
 
@@ -111,7 +127,9 @@ def edge_loop() -> Sheet:
         sheet.polygon([view(c) for c in corners], BOXES[block.boxes.index(other)], GREY, 1, 0.25)
     spots = {number: view(list(block.place(block.crossings[number]) + move)) for number in order}
     for a, b in zip(order, [*order[1:], order[0]], strict=True):
-        sheet.arrow(spots[a], spots[b], EDGE, 2)
+        (x, y), (u, v) = spots[a], spots[b]
+        short = 6 / ((u - x) ** 2 + (v - y) ** 2) ** 0.5  # of the dot at the end
+        sheet.arrow((x, y), (u - short * (u - x), v - short * (v - y)), EDGE, 2)
     for number, at in spots.items():
         is_rim = stops[number] % 2 == 0
         sheet.dot(at, 5, KEPT if is_rim else IN, INK)
@@ -128,14 +146,16 @@ def edge_loop() -> Sheet:
         for m, value in enumerate(values):
             sheet.text((510 + (0, 70, 130, 190)[m], y), value)
     y = 90 + 26 * len(order)
-    notes = ("Even stops are crossings on edges of the box: the rim, in order.",
-             "Odd stops are the faces between them; a kept crossing within a",
-             "face was cut there by a neighbour. It comes as far along as its",
-             "way from the face's first rim crossing, taken along the line to",
-             "the second, in half steps.",
-             f"The tinted rectangles are the padis of face 0: what this box",
-             f"shares with each of its {len(neighbours(block, box, 0))} neighbours there.",
-             f"Rim: {len(rim(block, box))} crossings. Loop: {len(order)}, so {len(order) - 2} triangles.")
+    notes = (
+        "Even stops are crossings on edges of the box: the rim, in order.",
+        "Odd stops are the faces between them; a kept crossing within a",
+        "face was cut there by a neighbour. It comes as far along as its",
+        "way from the face's first rim crossing, as a scalar product with",
+        "the way to the second, in half steps.",
+        "The tinted rectangles are the padis of face 0: what this box",
+        f"shares with each of its {len(neighbours(block, box, 0))} neighbours there.",
+        f"Rim: {len(rim(block, box))} crossings. Loop: {len(order)}, so {len(order) - 2} triangles.",
+    )
     for n, note in enumerate(notes):
         sheet.text((430, y + 20 * n), note)
     return sheet
@@ -146,7 +166,9 @@ def result() -> Sheet:
     march, drawn = marched()
     sheet = Sheet(900, 330, "Marching cubes and climbing, and what was left out")
     ours = [triangle for box in block.boxes for triangle in cut(block, box)]
-    for n, (blk, triangles, words) in enumerate(((march, drawn, "marching cubes"), (block, ours, "climbing"), (block, ours, "the crossings left out"))):
+    for n, (blk, triangles, words) in enumerate(
+        ((march, drawn, "marching cubes"), (block, ours, "climbing"), (block, ours, "the crossings left out"))
+    ):
         view = View((24 + 296 * n, 280), 46)
         view.box(sheet, (0, 0, 0), (N, N, N), GREY)
         corners = [[[float(x) for x in blk.place(blk.crossings[c])] for c in t] for t in triangles]

@@ -50,7 +50,9 @@ def samples_and_signs() -> Sheet:
         for j in (0,):
             for i in range(N + 1):
                 inside = bool(block.inside[i, j, k])
-                sheet.dot(view((i, j, k)), 3.2 if inside else 2.4, IN if inside else "#fff", INK if inside else GREY, 0.8)
+                sheet.dot(
+                    view((i, j, k)), 3.2 if inside else 2.4, IN if inside else "#fff", INK if inside else GREY, 0.8
+                )
     sheet.text((630, 328), "i to the right, j to the back, k up;", size=11, ink=GREY)
     sheet.text((630, 343), "dots: the samples with j = 0", size=11, ink=GREY)
     return sheet
@@ -70,13 +72,25 @@ def words() -> Sheet:
     for i in range(N + 1):
         sheet.text((300 + 30 * i + 15, 32), f"i={i}", anchor="middle", size=11, ink=GREY)
     row(40, f"row (j={j}, k={k})", here, "#f7d9bd", "a lign along x: five samples, one word; bit i is sample i")
-    row(70, f"row >> 1", [*here[1:], False], "#f7d9bd", "the neighbours along x, moved under their bits")
-    row(100, "row ^ row >> 1", [a != b for a, b in zip(here, [*here[1:], here[-1]], strict=True)], SURFACE, "edges along x that are crossed")
+    row(70, "row >> 1", [*here[1:], False], "#f7d9bd", "the neighbours along x, moved under their bits")
+    row(
+        100,
+        "row ^ row >> 1",
+        [a != b for a, b in zip(here, [*here[1:], here[-1]], strict=True)],
+        SURFACE,
+        "edges along x that are crossed",
+    )
     row(150, f"row (j={j + 1}, k={k})", right, "#f7d9bd", "the next row: the other ends of five edges along y")
-    row(180, "row ^ that", [a != b for a, b in zip(here, right, strict=True)], SURFACE, "edges along y that are crossed")
+    row(
+        180, "row ^ that", [a != b for a, b in zip(here, right, strict=True)], SURFACE, "edges along y that are crossed"
+    )
     row(230, f"row (j={j}, k={k + 1})", up, "#f7d9bd", "the row above: the other ends of five edges along z")
     row(260, "row ^ that", [a != b for a, b in zip(here, up, strict=True)], SURFACE, "edges along z that are crossed")
-    sheet.text((30, 312), "Lowest bit on the left. The last bit of an edge word along x is cut off: no edge starts at the last sample.", ink=GREY)
+    sheet.text(
+        (30, 312),
+        "Lowest bit on the left. The last bit of an edge word along x is cut off: no edge starts at the last sample.",
+        ink=GREY,
+    )
     return sheet
 
 
@@ -87,7 +101,9 @@ def dikes() -> Sheet:
         level = label.bit_length() - 1
         x0, x1, y = left + start(label) * step, left + (start(label) + length(label)) * step, 46 + 52 * level
         sheet.rect(x0 + 3, y, x1 - x0 - 6, 34, ("#cfe0f1", "#dcebd9", "#f4e7cc")[level], INK, 1)
-        sheet.text(((x0 + x1) / 2, y + 22), f"dike {label}  (bit {bit(label)})", anchor="middle", size=13 if level < 2 else 12)
+        sheet.text(
+            ((x0 + x1) / 2, y + 22), f"dike {label}  (bit {bit(label)})", anchor="middle", size=13 if level < 2 else 12
+        )
         if level < 2:
             for child in (2 * label, 2 * label + 1):
                 middle = left + (start(child) + length(child) / 2) * step
@@ -102,12 +118,19 @@ def dikes() -> Sheet:
     sheet.text((560, 140), "A word has one answer for each dike:")
     order = sorted(range(1, 2 * N), key=bit)
     sheet.cells(560, 150, [str(bit(k)) for k in order], ["#fff"] * 7, w=40, h=20)
-    sheet.cells(560, 170, [str(k) for k in order], [("#cfe0f1", "#dcebd9", "#f4e7cc")[k.bit_length() - 1] for k in order], w=40)
+    sheet.cells(
+        560, 170, [str(k) for k in order], [("#cfe0f1", "#dcebd9", "#f4e7cc")[k.bit_length() - 1] for k in order], w=40
+    )
     sheet.text((848, 164), "bit", size=12, ink=GREY)
     sheet.text((848, 187), "dike", size=12, ink=GREY)
     sheet.text((560, 218), "A dike of several cells sits at its middle sample,")
     sheet.text((560, 238), "a unit at its own label: no two share a bit.")
-    sheet.text((60, 282), "DikeBits::widened<half>: shift by half, OR, keep the starts, put the answer at the middle; then the dikes twice as long.", ink=GREY)
+    sheet.text(
+        (60, 282),
+        "DikeBits::widened<half>: shift by half, OR, keep the starts, put the answer at the middle; "
+        "then the dikes twice as long.",
+        ink=GREY,
+    )
     return sheet
 
 
@@ -130,18 +153,32 @@ def survey() -> Sheet:
                 place = (column + 3 + start(x) * w, row_top + 3 + level * 25)
                 sheet.rect(*place, length(x) * w, 22, fills.get(block.price((x, y, z)), GOOD), "#fff", 1)
                 sheet.text((place[0] + length(x) * w / 2, place[1] + 15), str(x), anchor="middle", size=11)
-    for n, (fill, words_) in enumerate(((EMPTY, "nothing crosses it: 0"), (GOOD, "may be one highrice: 2"), (BAD, "must be split: 5 = kSplit"))):
+    for n, (fill, words_) in enumerate(
+        ((EMPTY, "nothing crosses it: 0"), (GOOD, "may be one highrice: 2"), (BAD, "must be split: 5 = kSplit"))
+    ):
         sheet.rect(672, 60 + 34 * n, 24, 22, fill)
         sheet.text((704, 76 + 34 * n), words_)
-    notes = ("Each small square is one pair of", "dikes along y and z; in it the", "seven dikes along x, by label,",
-             "as one tree: the whole lign on", "top, its halves, the four units.", "", "All squares are answered by two",
-             "words each: nothing_[y][z] and", "highrice_[y][z].", "", "The whole block is x 1, y 1, z 1:", "top of the lower left square.")
+    notes = (
+        "Each small square is one pair of",
+        "dikes along y and z; in it the",
+        "seven dikes along x, by label,",
+        "as one tree: the whole lign on",
+        "top, its halves, the four units.",
+        "",
+        "All squares are answered by two",
+        "words each: nothing_[y][z] and",
+        "highrice_[y][z].",
+        "",
+        "The whole block is x 1, y 1, z 1:",
+        "top of the lower left square.",
+    )
     for n, note in enumerate(notes):
         sheet.text((672, 190 + 20 * n), note)
-    counts = [sum(block.price((x, y, z)) == p for x in range(1, 8) for y in range(1, 8) for z in range(1, 8)) for p in (0, 2, 5)]
+    counts = [
+        sum(block.price((x, y, z)) == p for x in range(1, 8) for y in range(1, 8) for z in range(1, 8))
+        for p in (0, 2, 5)
+    ]
     sheet.text((672, 460), f"{counts[0]} hold nothing,", bold=True)
     sheet.text((672, 480), f"{counts[1]} may be one highrice,", bold=True)
     sheet.text((672, 500), f"{counts[2]} must be split.", bold=True)
     return sheet
-
-

@@ -18,7 +18,7 @@ SHADES = 40  # of the palette
 def render(corners: Floats, light: Floats, *, size: tuple[int, int], line: float, samples: int = 3) -> Shades:
     """Draw triangles with their edges, nearest first; triangles without area are passed over.
 
-    corners: (t, 3, 3), in pixels: x to the right, y down, z towards the eye. light: (3,), a unit vector from the surface.
+    corners: (t, 3, 3), in pixels: x to the right, y down, z towards the eye. light: (3,), a unit vector.
     size: (width, height). line: the width of an edge, in pixels. samples: along both sides of a pixel.
     """
     width, height = (n * samples for n in size)
@@ -27,7 +27,8 @@ def render(corners: Floats, light: Floats, *, size: tuple[int, int], line: float
     corners = corners * np.array([samples, samples, 1.0])
     for triangle in corners:
         _draw(triangle, light, line * samples / 2, depth, shade)
-    return shade.reshape(size[1], samples, size[0], samples).mean(axis=(1, 3))
+    pixels: Shades = shade.reshape(size[1], samples, size[0], samples).mean(axis=(1, 3))
+    return pixels
 
 
 def _draw(triangle: Floats, light: Floats, line: float, depth: Floats, shade: Shades) -> None:
@@ -64,7 +65,12 @@ def write_png(path: Path, shades: Shades, ink: tuple[int, int, int], surface: tu
     height, width = rows.shape
     scanlines = np.hstack([np.zeros((height, 1), np.uint8), rows])  # each begins with its filter: none
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
-    chunks = [(b"IHDR", header), (b"PLTE", palette.tobytes()), (b"IDAT", zlib.compress(scanlines.tobytes(), 9)), (b"IEND", b"")]
+    chunks = [
+        (b"IHDR", header),
+        (b"PLTE", palette.tobytes()),
+        (b"IDAT", zlib.compress(scanlines.tobytes(), 9)),
+        (b"IEND", b""),
+    ]
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(name, body) for name, body in chunks))
 
 

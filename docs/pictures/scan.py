@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from raster import Floats, Shades, render, write_png
 
 import isocore
-from raster import Floats, Shades, render, write_png
 
 HERE = Path(__file__).resolve().parent
 SAMPLE, ISOVALUE = HERE.parents[1] / "sample_volumes" / "knot.nii.gz", 200.0
@@ -39,7 +39,10 @@ def halves(turn: float = 1.9, tilt: float = 0.7) -> tuple[list[Shades], list[int
     scale = min((n - 2 * MARGIN) / (high[a] - low[a]) for a, n in enumerate(SIZE))
     middle = np.array([SIZE[0] / 2, SIZE[1] / 2, 0.0])
     light = np.array([-0.45, -0.6, 0.66])
-    shades = [render((view - (low + high) / 2) * scale + middle, light / np.linalg.norm(light), size=SIZE, line=0.75) for view in views]
+    shades = [
+        render((view - (low + high) / 2) * scale + middle, light / np.linalg.norm(light), size=SIZE, line=0.75)
+        for view in views
+    ]
     return shades, [len(s.triangles) for s in surfaces]
 
 

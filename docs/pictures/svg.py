@@ -36,7 +36,9 @@ class Sheet:
         ends = f'x1="{_n(a[0])}" y1="{_n(a[1])}" x2="{_n(b[0])}" y2="{_n(b[1])}"'
         self._parts.append(f'<line {ends} stroke="{ink}" stroke-width="{width}"{dashed}/>')
 
-    def polygon(self, corners: Iterable[Point], fill: str, ink: str = INK, width: float = 1, opacity: float = 1) -> None:
+    def polygon(
+        self, corners: Iterable[Point], fill: str, ink: str = INK, width: float = 1, opacity: float = 1
+    ) -> None:
         points = " ".join(f"{_n(x)},{_n(y)}" for x, y in corners)
         through = f' fill-opacity="{opacity}"' if opacity < 1 else ""
         stroke = f' stroke="{ink}" stroke-width="{width}" stroke-linejoin="round"' if width else ""
@@ -55,7 +57,15 @@ class Sheet:
         )
 
     def text(
-        self, at: Point, words: str, *, size: float = 13, anchor: str = "start", ink: str = INK, bold: bool = False, mono: bool = False
+        self,
+        at: Point,
+        words: str,
+        *,
+        size: float = 13,
+        anchor: str = "start",
+        ink: str = INK,
+        bold: bool = False,
+        mono: bool = False,
     ) -> None:
         style = f' font-size="{size:g}"' if size != 13 else ""
         style += f' text-anchor="{anchor}"' if anchor != "start" else ""
@@ -69,9 +79,13 @@ class Sheet:
         size = (dx * dx + dy * dy) ** 0.5
         dx, dy = 7 * dx / size, 7 * dy / size
         self.line(a, (b[0] - dx, b[1] - dy), ink, width)
-        self.polygon([b, (b[0] - dx + dy / 2, b[1] - dy - dx / 2), (b[0] - dx - dy / 2, b[1] - dy + dx / 2)], ink, ink, 0)
+        self.polygon(
+            [b, (b[0] - dx + dy / 2, b[1] - dy - dx / 2), (b[0] - dx - dy / 2, b[1] - dy + dx / 2)], ink, ink, 0
+        )
 
-    def cells(self, x: float, y: float, words: Sequence[str], fills: Sequence[str], *, w: float = 24, h: float = 24) -> None:
+    def cells(
+        self, x: float, y: float, words: Sequence[str], fills: Sequence[str], *, w: float = 24, h: float = 24
+    ) -> None:
         """A row of squares with a word in each."""
         for n, (word, fill) in enumerate(zip(words, fills, strict=True)):
             self.rect(x + n * w, y, w, h, fill)
