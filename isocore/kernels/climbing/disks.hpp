@@ -116,7 +116,7 @@ class Disks {
                 }
             }
             polygons.cut(count);
-            std::int32_t* vertices = out.room_for(count * polygons.kTriangles);
+            std::int32_t* vertices = out.reserve(count * polygons.kTriangles);
             for (std::size_t n = 0; n < count; ++n) {
                 const auto triangles = polygons.triangles(n);
                 for (const auto& triangle : triangles) {
@@ -165,7 +165,7 @@ class Disks {
             });
         }
         const auto triangles = polygon_.cut();
-        std::int32_t* vertices = out.room_for(triangles.size());
+        std::int32_t* vertices = out.reserve(triangles.size());
         for (const auto& triangle : triangles) {
             for (const std::size_t corner : triangle) *vertices++ = polygon_.vertex(corner);
         }

@@ -63,7 +63,7 @@ class Drawer {
 
     // Of a row, a bit each.
     void draw_cells(Bar& bar, int j, int k, std::uint64_t cells) {
-        std::int32_t* out = triangles_.room_for(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
+        std::int32_t* out = triangles_.reserve(kMostOfCell * static_cast<std::size_t>(std::popcount(cells)));
         for (std::uint64_t left = cells; left; left &= left - 1) {
             const int x = std::countr_zero(left);
             const auto pair = [&](int right, int up) {
@@ -80,8 +80,8 @@ class Drawer {
                 ++bar.ambiguous_cells;
                 bar.ambiguous_faces += static_cast<std::size_t>(std::popcount(unsigned{entry.ambiguous}));
             }
-            const auto numbers =
-                edge_numbers(site_.cut(j, k), site_.cut(j + 1, k), site_.cut(j, k + 1), site_.cut(j + 1, k + 1), x);
+            const auto numbers = edge_numbers(site_.kept_row(j, k), site_.kept_row(j + 1, k), site_.kept_row(j, k + 1),
+                                              site_.kept_row(j + 1, k + 1), x);
             const auto& drawn = cell_loops::kTable.cases[entry.first + decisions];
             for (unsigned n = 0; n < 3u * drawn.triangles; ++n)
                 *out++ = static_cast<std::int32_t>(numbers[drawn.edges[n]]);
@@ -90,15 +90,15 @@ class Drawer {
     }
 
     // The vertices on a cell's twelve edges (cube.hpp's order); those of edges that are not crossed mean nothing.
-    using Cut = DrawnSite::Cut;
-    static std::array<std::uint32_t, 12> edge_numbers(const Cut& row, const Cut& right, const Cut& up, const Cut& far,
-                                                      int x) {
+    using KeptRow = DrawnSite::KeptRow;
+    static std::array<std::uint32_t, 12> edge_numbers(const KeptRow& row, const KeptRow& right, const KeptRow& up,
+                                                      const KeptRow& far, int x) {
         const std::uint64_t before = (std::uint64_t{1} << x) - 1;
-        const auto number = [&](const Cut& from, std::size_t axis) {
+        const auto number = [&](const KeptRow& from, std::size_t axis) {
             return from.first_vertex[axis] + static_cast<std::uint32_t>(std::popcount(from.kept[axis] & before));
         };
         std::array<std::uint32_t, 12> out{number(row, 0), number(right, 0), number(up, 0), number(far, 0)};
-        const auto two = [&](std::size_t edge, const Cut& from, std::size_t axis) {
+        const auto two = [&](std::size_t edge, const KeptRow& from, std::size_t axis) {
             out[edge] = number(from, axis);
             out[edge + 1] = out[edge] + static_cast<std::uint32_t>(from.kept[axis] >> x & 1);
         };

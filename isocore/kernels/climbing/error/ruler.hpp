@@ -58,7 +58,8 @@ class Ruler {
     // Adds a box of those, the one of that number in its bar, whose dropped crossings are `count` from the first on.
     // Its triangles are added next.
     void begin_box(std::size_t number, std::size_t first, std::size_t count, std::size_t triangles, Bar& bar) {
-        if (voxels_.facets.size() + triangles > Facets::kRoom || crossings_ + count > BoxEdges::kRoom) measure(bar);
+        if (voxels_.facets.size() + triangles > Facets::kRoom || crossings_ + count > BoxEdges::kMostEdges)
+            measure(bar);
         boxes_.push_back({number, triangles, first, count});
         crossings_ += count;
     }
@@ -88,7 +89,7 @@ class Ruler {
 
   private:
     using Numbers = Lanes<float>;
-    using Row = std::array<float, BoxEdges::kRoom + kLanes<float>>;
+    using Row = std::array<float, BoxEdges::kMostEdges + kLanes<float>>;
     static constexpr Spot kNoStretch{1, 1, 1};
     static constexpr std::size_t kWorthwhile = 96, kPlacedAtOnce = 256;  // triangles; crossings
     static_assert(Facets::kRoom >= BoxEdges::kMostOfBox);

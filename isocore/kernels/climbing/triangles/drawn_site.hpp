@@ -1,77 +1,54 @@
-// drawn_site.hpp - A site once it is known which crossings are vertices, of its own boxes or of its neighbours'.
+// drawn_site.hpp - A site whose layout is complete: of each crossed edge it is known whether it is a vertex of the mesh
+// (it was kept, by one of the block's boxes or by a neighbour's) and which number that vertex has.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "climbing/crossings/site.hpp"
+#include "common/array.hpp"
 
 namespace isocore::climbing {
 
 class DrawnSite : public Site {
   public:
-    // Edges that start in half a row, at samples 0 ... 20 or 16 ... 36, side by side: those along x, along y, along z.
-    // A box lies in either half of a row, unless it is longer than a half.
-    using Half = std::uint64_t;
-    static constexpr int kWindow = 21, kHalf = 16;
+    // A window shows the edges that start at 21 neighbouring samples of a row, along all three axes, in 63 bits:
+    //
+    //     | 0: 63 | along z: 42..62 | along y: 21..41 | along x: 0..20 |
+    //
+    // so that one AND, one XOR or one popcount serves all three axes. A row has two of them: window 0 starts at sample
+    // 0 and window 1 at sample 16. Boxes come from halving a block of at most 32 cells; hence each lies in samples
+    // 0..16, which window 0 shows, or in 16..32, which window 1 shows, or it is 32 cells long and uses both.
+    using Window = std::uint64_t;
+    static constexpr int kWindowSamples = 21, kWindowStep = 16;
 
-    // What becomes of the crossed edges that start in a row.
-    struct Cut {
+    // What became of the crossed edges that start in row (j, k). Kept edges are vertices; dropped edges are crossed,
+    // but no vertices. A bit of `kept` is a sample of the row; the windows have the bits shown above.
+    struct KeptRow {
         std::array<std::uint64_t, 3> kept{};          // along each axis
-        std::array<std::uint32_t, 3> first_vertex{};  // the numbers of the first of them, where there are any
-        std::array<Half, 2> kept_halves{}, dropped_halves{};
+        std::array<std::uint32_t, 3> first_vertex{};  // the number of the first kept edge along each axis, if any
+        std::array<Window, 2> kept_windows{}, dropped_windows{};
     };
 
-    explicit DrawnSite(int block_size) : Site(block_size) {
-        cuts_.resize(samples() * samples());
-        next_vertices_.resize(cuts_.size());
-    }
+    explicit DrawnSite(int block_size);
 
-    void begin(const SignGrid& signs, const Layout& layout, std::size_t y, std::size_t z) {
-        Site::begin(signs, layout, y, z);
-        for_rows([&](int j, int k) {
-            const std::size_t row = row_index(j, k);
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                next_vertices_[row][axis] = static_cast<std::uint32_t>(layout.vertex(next_crossings_[row][axis]));
-        });
-    }
+    // As Site's. The vertices must have been numbered by layout.number().
+    void begin(const SignGrid& signs, const Layout& layout, std::size_t y, std::size_t z);
+    void load(std::size_t x);
 
-    void load(std::size_t x) {
-        Site::load(x);
-        std::fill(cuts_.begin(), cuts_.end(), Cut{});
-        const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
-        for (const Edge& start : crossed_rows()) {
-            const std::size_t row = row_index(start.at(1), start.at(2)), axis = start.axis();
-            const Row& here = this->row(start.at(1), start.at(2));
-            const std::uint64_t crossed = here.crossed[axis], kept = layout_->kept(crossed, here.first_crossing[axis]);
-            Cut& out = cuts_[row];
-            out.kept[axis] = kept;
-            out.first_vertex[axis] = next_vertices_[row][axis];
-            next_vertices_[row][axis] += ones(kept & own);
-            for (std::size_t half = 0; half <= static_cast<std::size_t>(cells[0] > kHalf); ++half) {
-                const auto window = [&](std::uint64_t edges) {
-                    return (edges >> kHalf * half & ((Half{1} << kWindow) - 1)) << kWindow * axis;
-                };
-                out.kept_halves[half] |= window(kept);
-                out.dropped_halves[half] |= window(crossed ^ kept);
-            }
-        }
-    }
+    const KeptRow& kept_row(int j, int k) const { return kept_rows_[row_index(j, k)]; }
 
-    const Cut& cut(int j, int k) const { return cuts_[row_index(j, k)]; }
-
-    // The number of a kept edge.
+    // The vertex on a kept edge: a rank query in its row.
     std::int32_t vertex(std::size_t axis, const Place& at) const {
-        const Cut& here = cut(at[1], at[2]);
+        const KeptRow& here = kept_row(at[1], at[2]);
         return static_cast<std::int32_t>(here.first_vertex[axis] +
                                          ones(here.kept[axis] & ((std::uint64_t{1} << at[0]) - 1)));
     }
 
   private:
-    Array<Cut> cuts_;
-    Array<std::array<std::uint32_t, 3>> next_vertices_;  // what comes after the blocks that were loaded
+    Array<KeptRow> kept_rows_;
+    Array<std::array<std::uint32_t, 3>> next_vertices_;  // by row: the vertex after those of the blocks loaded so far
 };
 
 }  // namespace isocore::climbing
