@@ -1,4 +1,4 @@
-// Loops cut into triangles, one at a time and several at once, against all triangulations there are.
+// Loops triangulated one at a time and several at once, against all triangulations there are.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,10 +77,10 @@ void check(const Loop& loop, const Triangles& triangles) {
     }
     CHECK(sides.size() == length + 2 * (length - 3));
     const double least = loop.least_area();
-    CHECK(area <= least * (1 + 1e-5));  // floats, in which nearly equal prices are as good
+    CHECK(area <= least * (1 + 1e-5));  // floats, in which nearly equal areas are as good
 }
 
-void one_loop_is_cut_at_the_least_price() {
+void one_loop_is_triangulated_with_the_least_area() {
     std::mt19937 random(21);
     Polygon polygon;
     for (int trial = 0; trial < 4000; ++trial) {
@@ -88,20 +88,21 @@ void one_loop_is_cut_at_the_least_price() {
         polygon.resize(loop.places.size());
         for (std::size_t n = 0; n < loop.places.size(); ++n)
             polygon.set(n, loop.places[n], loop.faces[n], static_cast<std::int32_t>(n));
-        bool is_cut = true;
+        bool is_done = true;
         Triangles triangles;
         try {
-            for (const auto& triangle : polygon.cut()) triangles.push_back({triangle[0], triangle[1], triangle[2]});
+            for (const auto& triangle : polygon.triangulate())
+                triangles.push_back({triangle[0], triangle[1], triangle[2]});
         } catch (const std::logic_error&) {
-            is_cut = false;
+            is_done = false;
         }
-        CHECK(is_cut == std::isfinite(loop.least_area()));
-        if (is_cut) check(loop, triangles);
+        CHECK(is_done == std::isfinite(loop.least_area()));
+        if (is_done) check(loop, triangles);
     }
 }
 
 template <std::size_t length>
-void several_loops_are_cut_at_the_least_price() {
+void several_loops_are_triangulated_with_the_least_area() {
     std::mt19937 random(22);
     Polygons<length> polygons;
     for (int trial = 0; trial < 400; ++trial) {
@@ -113,13 +114,13 @@ void several_loops_are_cut_at_the_least_price() {
                 polygons.set(n, c, loops[n].places[c], loops[n].faces[c], static_cast<std::int32_t>(100 * n + c));
             all_can_be = all_can_be && std::isfinite(loops[n].least_area());
         }
-        bool is_cut = true;
+        bool is_done = true;
         try {
-            polygons.cut(loops.size());
+            polygons.triangulate(loops.size());
         } catch (const std::logic_error&) {
-            is_cut = false;
+            is_done = false;
         }
-        CHECK(is_cut == all_can_be);
+        CHECK(is_done == all_can_be);
         for (std::size_t n = 0; n < loops.size(); ++n) {
             if (!std::isfinite(loops[n].least_area())) continue;
             const auto triangles = polygons.triangles(n);
@@ -133,11 +134,11 @@ void several_loops_are_cut_at_the_least_price() {
 }  // namespace
 
 void test_polygons() {
-    one_loop_is_cut_at_the_least_price();
-    several_loops_are_cut_at_the_least_price<3>();
-    several_loops_are_cut_at_the_least_price<4>();
-    several_loops_are_cut_at_the_least_price<5>();
-    several_loops_are_cut_at_the_least_price<6>();
-    several_loops_are_cut_at_the_least_price<7>();
-    several_loops_are_cut_at_the_least_price<8>();
+    one_loop_is_triangulated_with_the_least_area();
+    several_loops_are_triangulated_with_the_least_area<3>();
+    several_loops_are_triangulated_with_the_least_area<4>();
+    several_loops_are_triangulated_with_the_least_area<5>();
+    several_loops_are_triangulated_with_the_least_area<6>();
+    several_loops_are_triangulated_with_the_least_area<7>();
+    several_loops_are_triangulated_with_the_least_area<8>();
 }

@@ -115,7 +115,7 @@ class Disks {
                     });
                 }
             }
-            polygons.cut(count);
+            polygons.triangulate(count);
             std::int32_t* vertices = out.reserve(count * polygons.kTriangles);
             for (std::size_t n = 0; n < count; ++n) {
                 const auto triangles = polygons.triangles(n);
@@ -164,7 +164,7 @@ class Disks {
                 polygon_.set(e, place, faces, vertex);
             });
         }
-        const auto triangles = polygon_.cut();
+        const auto triangles = polygon_.triangulate();
         std::int32_t* vertices = out.reserve(triangles.size());
         for (const auto& triangle : triangles) {
             for (const std::size_t corner : triangle) *vertices++ = polygon_.vertex(corner);

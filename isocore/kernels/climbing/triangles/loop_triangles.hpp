@@ -1,4 +1,4 @@
-// loop_triangles.hpp - The triangles of a loop that was cut, from the corner that its parts are cut at.
+// loop_triangles.hpp - Turns the table that dynamic programming leaves behind into a list of triangles.
 #pragma once
 
 #include <array>
@@ -6,11 +6,13 @@
 
 namespace isocore::climbing {
 
-using LoopTriangle = std::array<std::size_t, 3>;  // numbers of corners
-using LoopPart = std::array<std::size_t, 2>;      // between two corners
+using LoopTriangle = std::array<std::size_t, 3>;  // three corners of a loop, by number
+using LoopPart = std::array<std::size_t, 2>;      // the corners i, i + 1 ... j of a loop, closed by a line from i to j
 
-// Writes the size - 2 triangles; apex(i, j): the third corner of the one at the line from corner i to corner j. There
-// is room for `size` parts.
+// Writes the size - 2 triangles of a loop of `size` corners to `out`. apex(i, j) is the third corner of the triangle on
+// the line that closes part (i, j). The parts that are still to be listed are a stack in `parts`, which has room for
+// `size`. A part of two corners is a side of the loop and has no triangle: it is written to the stack, but not kept, so
+// that no branch depends on it.
 template <class Apex>
 void list_triangles(std::size_t size, const Apex& apex, LoopPart* parts, LoopTriangle* out) {
     parts[0] = {0, size - 1};

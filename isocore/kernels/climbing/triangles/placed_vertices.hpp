@@ -1,5 +1,5 @@
-// placed_vertices.hpp - The vertices of the mesh, seen from near by. Whether they are floats or doubles is known here
-// alone.
+// placed_vertices.hpp - The vertices of the mesh as float32, relative to an origin near by. Whether the mesh stores
+// floats or doubles is known in this class alone.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,12 @@ namespace isocore::climbing {
 
 class PlacedVertices {
   public:
+    // places: x, y, z of each vertex, in samples. They must outlive this object.
     explicit PlacedVertices(const float* places) : floats_(places) {}
     explicit PlacedVertices(const double* places) : doubles_(places) {}
 
-    // A vertex relative to an origin that is whole, in samples, and near by, so that float keeps its digits. The
-    // difference of two floats is exact in double, so that it is rounded once, however vertices are stored.
+    // A vertex minus an origin of whole samples near it, so that float32 keeps its precision. The difference is taken
+    // in double, where it is exact for two floats: it is rounded once, in whatever type the vertices are stored.
     Spot from(const Vector<double>& origin, std::size_t vertex) const {
         return floats_ ? from(origin, floats_ + 3 * vertex) : from(origin, doubles_ + 3 * vertex);
     }

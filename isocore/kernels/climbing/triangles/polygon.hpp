@@ -1,8 +1,8 @@
-// polygon.hpp - Cuts the loop of a highrice into triangles. A diagonal whose ends share a face of the box could be
-// drawn by the neighbour too and is not taken; of the others the cheapest set is found by dynamic programming.
+// polygon.hpp - Triangulates the loop of a highrice: the set of triangles of least total area, found by dynamic
+// programming over the parts of the loop. A diagonal whose two ends share a face of the box is not taken, as the
+// neighbour behind that face could draw it too. Any length; polygons.hpp does the same for several short loops at once.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +14,7 @@
 
 namespace isocore::climbing {
 
+// resize(), set() for each corner in the loop's order, then triangulate().
 class Polygon {
   public:
     using Triangle = LoopTriangle;
@@ -22,7 +23,7 @@ class Polygon {
         if (corners_.size() < size) make_room(size);
         size_ = size;
     }
-    // faces: those of the box that the corner lies on, a bit each.
+    // faces: the faces of the box that the corner lies on, a bit each. vertex: any number, given back by vertex(n).
     void set(std::size_t n, const Spot& place, unsigned faces, std::int32_t vertex) {
         for (std::size_t a = 0; a < 3; ++a) places_[a][n] = place[a];
         corners_[n] = {faces, vertex};
@@ -30,11 +31,16 @@ class Polygon {
     Spot place(std::size_t n) const { return {places_[0][n], places_[1][n], places_[2][n]}; }
     std::int32_t vertex(std::size_t n) const { return corners_[n].vertex; }
 
-    // Its size() - 2 triangles, until the next time.
-    std::span<const Triangle> cut();
+    // The size - 2 triangles, as corner numbers in the loop's sense; valid until the next call. Throws std::logic_error
+    // if every triangulation has a diagonal that may not be taken.
+    std::span<const Triangle> triangulate();
 
   private:
     using Numbers = Lanes<float>;
+    struct Corner {
+        unsigned faces;
+        std::int32_t vertex;
+    };
 
     void make_room(std::size_t size);
     bool may_join(std::size_t i, std::size_t j) const { return !(corners_[i].faces & corners_[j].faces); }
@@ -42,20 +48,16 @@ class Polygon {
     Vector<Numbers> in_all_lanes(std::size_t n) const;
     void cut_ears();
     void find_apex(std::size_t i, std::size_t j);
-    void note(std::size_t i, std::size_t j, float cost, std::size_t apex);
+    void note(std::size_t i, std::size_t j, float area, std::size_t apex);
 
     std::size_t size_ = 0, stride_ = 0;
-    struct Corner {
-        unsigned faces;
-        std::int32_t vertex;
-    };
     std::vector<Corner> corners_;
-    Vector<std::vector<float>> places_;  // of the corners, and room for all lanes
-    // Of the part between corners i ... j and the line from i to j: the area of its best triangles, and the corner of
-    // the one at that line.
-    std::vector<float> cost_;
+    Vector<std::vector<float>> places_;  // x, y, z of the corners, each padded by one register of lanes
+    // The solved parts (i, j), at i * stride + j: twice the least area of their triangles, also at j * stride + i, and
+    // the apex of the triangle on the line from i to j.
+    std::vector<float> area_;
     std::vector<std::uint16_t> apex_;
-    std::vector<LoopPart> parts_;
+    std::vector<LoopPart> parts_;  // scratch of list_triangles
     std::vector<Triangle> triangles_;
 };
 

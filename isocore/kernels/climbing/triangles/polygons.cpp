@@ -6,10 +6,10 @@
 namespace isocore::climbing {
 
 template <std::size_t length>
-void Polygons<length>::cut(std::size_t count) {
-    constexpr float kIllegal = 1e30f;                      // more than any area; a few of them are still a number
-    std::array<std::array<Numbers, length>, length> cost;  // twice the area of the best triangles between two corners
-    for (std::size_t i = 0; i + 1 < length; ++i) cost[i][i + 1] = 0.0f;
+void Polygons<length>::triangulate(std::size_t count) {
+    constexpr float kIllegal = 1e30f;  // larger than any area, and so small that the sum of a few is finite
+    std::array<std::array<Numbers, length>, length> area;  // [i][j]: twice the least area of part (i, j)'s triangles
+    for (std::size_t i = 0; i + 1 < length; ++i) area[i][i + 1] = 0.0f;
     for (std::size_t span = 2; span < length; ++span) {
         for (std::size_t i = 0; i + span < length; ++i) {
             const std::size_t j = i + span;
@@ -17,18 +17,18 @@ void Polygons<length>::cut(std::size_t count) {
             Numbers best(std::numeric_limits<float>::infinity()), apex(0.0f);
             for (std::size_t k = i + 1; k < j; ++k) {
                 const auto normal = cross(minus(places(k), from), along);
-                const Numbers price = cost[i][k] + cost[k][j] + root(dot(normal, normal));
-                apex = choose(price < best, Numbers(static_cast<float>(k)), apex);
-                best = least(best, price);
+                const Numbers tried = area[i][k] + area[k][j] + root(dot(normal, normal));
+                apex = choose(tried < best, Numbers(static_cast<float>(k)), apex);
+                best = least(best, tried);
             }
             apex.store(apex_[i][j].data());
             const bool is_whole = span + 1 == length;
-            cost[i][j] = is_whole ? best
+            area[i][j] = is_whole ? best
                                   : choose(have_no_bit_in_common(Numbers(faces_[i].data()), Numbers(faces_[j].data())),
                                            best, kIllegal);
         }
     }
-    const auto found = cost[0][length - 1].each();
+    const auto found = area[0][length - 1].each();
     for (std::size_t n = 0; n < count; ++n) {
         if (!(found[n] < kIllegal)) throw std::logic_error("a loop has no legal triangulation");
     }

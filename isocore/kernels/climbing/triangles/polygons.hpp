@@ -1,5 +1,5 @@
-// polygons.hpp - Cuts several loops of the same length into triangles at once, by the rules of polygon.hpp: nearly all
-// loops are short.
+// polygons.hpp - Triangulates several loops of one length at once, a loop in each lane, by the rules of polygon.hpp:
+// nearly all loops are short.
 #pragma once
 
 #include <array>
@@ -13,17 +13,18 @@
 
 namespace isocore::climbing {
 
-// Instantiated for the lengths from 3 to kLongestOfSeveral.
+// Polygons is instantiated for the lengths from 3 to this one.
 inline constexpr std::size_t kLongestOfSeveral = 8;
 
+// set() for each corner of each loop, triangulate(), then triangles(n) for each loop.
 template <std::size_t length>
 class Polygons {
   public:
-    static constexpr std::size_t kCount = kLanes<float>;
-    static constexpr std::size_t kTriangles = length - 2;
+    static constexpr std::size_t kCount = kLanes<float>;   // loops at once
+    static constexpr std::size_t kTriangles = length - 2;  // of each loop
     using Triangle = LoopTriangle;
 
-    // Of loop n; faces: those of the box that the corner lies on, a bit each.
+    // Sets a corner of loop n. faces: the faces of the loop's box that the corner lies on, a bit each.
     void set(std::size_t n, std::size_t corner, const Spot& place, unsigned faces, std::int32_t vertex) {
         for (std::size_t a = 0; a < 3; ++a) places_[corner][a][n] = place[a];
         faces_[corner][n] = std::bit_cast<float>(std::uint32_t{faces});
@@ -34,23 +35,24 @@ class Polygons {
     }
     std::int32_t vertex(std::size_t n, std::size_t corner) const { return vertices_[corner][n]; }
 
-    // Cuts the first `count` loops.
-    void cut(std::size_t count);
+    // Triangulates the first `count` loops. Throws std::logic_error if one of them cannot be.
+    void triangulate(std::size_t count);
+    // The triangles of loop n, as corner numbers in the loop's sense.
     std::array<Triangle, kTriangles> triangles(std::size_t n) const;
 
   private:
     using Numbers = Lanes<float>;
-    using Row = std::array<float, kCount>;
+    using PerLoop = std::array<float, kCount>;
 
     Vector<Numbers> places(std::size_t corner) const {
-        const Vector<Row>& at = places_[corner];
+        const Vector<PerLoop>& at = places_[corner];
         return {Numbers(at[0].data()), Numbers(at[1].data()), Numbers(at[2].data())};
     }
 
-    std::array<Vector<Row>, length> places_{};
-    std::array<Row, length> faces_{};
+    std::array<Vector<PerLoop>, length> places_{};  // by corner
+    std::array<PerLoop, length> faces_{};           // by corner; integers in a float's bits
     std::array<std::array<std::int32_t, kCount>, length> vertices_{};
-    std::array<std::array<Row, length>, length> apex_;  // of the part between two corners
+    std::array<std::array<PerLoop, length>, length> apex_;  // apex_[i][j]: of part (i, j), see loop_triangles.hpp
 };
 
 }  // namespace isocore::climbing
