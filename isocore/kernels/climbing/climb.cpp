@@ -18,6 +18,7 @@
 #include "climbing/crossings/gatherer.hpp"
 #include "climbing/crossings/layout.hpp"
 #include "climbing/drawer.hpp"
+#include "climbing/error/late_mesh.hpp"
 #include "climbing/error/splitting.hpp"
 #include "climbing/triangles/in_order.hpp"
 #include "common/parallel.hpp"
@@ -93,7 +94,7 @@ class Climb {
 
     // Halves the boxes that break the bound. False if there are none.
     bool split() {
-        const std::vector<LateBox> late = split_broken(signs_, bars_);
+        const std::vector<LateHighRice> late = split_broken(signs_, bars_);
         if (late.empty()) return false;
         insert_vertices(keep_late(signs_, late, options_.block_size, layout_));
 

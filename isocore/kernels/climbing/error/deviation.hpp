@@ -1,8 +1,7 @@
-// deviation.hpp - How far marching cubes' vertices lie from our surface: each is measured in one box, against the
-// triangles of that box. So the true distance is never larger.
+// deviation.hpp - Adds up how far marching cubes' vertices lie from our surface. Each is measured in one box, against
+// the triangles of that box alone, so its distance to the whole surface is never larger than what is added here.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -11,11 +10,12 @@
 
 namespace isocore::climbing {
 
-// Distances that are yet to be added up, lane by lane.
+// One partial sum for each lane. They are added together only at the end.
 class Tally {
   public:
     using Numbers = Lanes<float>;
 
+    // Adds distances and their squares. A lane that is not used has 0 in both.
     void add(const Numbers& distances, const Numbers& squared) {
         most_ = greatest(most_, distances);
         const auto each = distances.each(), each_squared = squared.each();
@@ -25,7 +25,7 @@ class Tally {
         }
     }
 
-    // Of all that was added, in units that are `unit` long.
+    // The deviation over all distances added, which are in units of length `unit`.
     Deviation sum_up(double unit) const {
         Deviation out;
         out.max = unit * static_cast<double>(most_.greatest_lane());

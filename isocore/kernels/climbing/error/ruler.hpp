@@ -1,10 +1,9 @@
-// ruler.hpp - Measures highrices, many at a time: how far the crossings in a box that are not drawn lie from its
-// triangles.
+// ruler.hpp - Measures highrices, many at a time: how far the dropped crossings of a box (marching cubes' vertices that
+// our mesh does not have) lie from the triangles of that box. Sums go to the bar, and so does the number of each box
+// that breaks the error bound.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -19,128 +18,56 @@
 
 namespace isocore::climbing {
 
+// For each list of box edges: place(), then for each of its boxes begin_box(), add() for each triangle, end_box(); then
+// measure(). After the last list of a bar: take().
 class Ruler {
   public:
-    Ruler(const SampleReader& samples, const Options& options)
-        : options_(options),
-          unit_(*std::max_element(options.spacing.begin(), options.spacing.end())),
-          spotter_(samples) {
-        for (std::size_t a = 0; a < 3; ++a) stretch_[a] = static_cast<float>(options.spacing[a] / unit_);
-        if (stretch_ != kNoStretch) world_ = std::make_unique<Measured>();
-        // In the units of the distances, and rounded down.
-        const double unit = options.in_world ? unit_ : 1;
-        limit_ = static_cast<float>(options.max_error / unit);
-        while (static_cast<double>(limit_) * unit > options.max_error) limit_ = std::nextafter(limit_, 0.0f);
-    }
+    Ruler(const SampleReader& samples, const Options& options);
 
-    // Finds where the dropped crossings of some boxes of the block at `origin` are, relative to their boxes.
-    void place(const Dims& origin, const BoxEdges& edges) {
-        std::size_t placed = 0;
-        const auto place_added = [&] {
-            const std::size_t start = placed;
-            spotter_.visit(origin, kNoStretch,
-                           [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t count) {
-                               for (std::size_t a = 0; a < 3; ++a) {
-                                   places[a].store(voxels_.places[a].data() + start + first);
-                                   if (world_)
-                                       (places[a] * stretch_[a]).store(world_->places[a].data() + start + first);
-                               }
-                               placed += count;
-                           });
-        };
-        for (const BoxEdge& found : edges.dropped()) {
-            spotter_.add(found.edge(), edges.box(found.box()).low);
-            if (spotter_.full()) place_added();
-        }
-        place_added();
-    }
+    // Finds where the dropped crossings of the boxes are, relative to their boxes' low ends. origin: of their block.
+    void place(const Dims& origin, const BoxEdges& edges);
 
-    // Adds a box of those, the one of that number in its bar, whose dropped crossings are `count` from the first on.
-    // Its triangles are added next.
-    void begin_box(std::size_t number, std::size_t first, std::size_t count, std::size_t triangles, Bar& bar) {
-        if (voxels_.facets.size() + triangles > Facets::kRoom || crossings_ + count > BoxEdges::kMostEdges)
-            measure(bar);
-        boxes_.push_back({number, triangles, first, count});
-        crossings_ += count;
-    }
-    void add(const Spot& a, const Spot& b, const Spot& c) {
-        voxels_.facets.add(a, b, c);
-        if (world_) world_->facets.add(stretched(a, stretch_), stretched(b, stretch_), stretched(c, stretch_));
-    }
-    // Measures the boxes that were added if they are worth it; those that break the bound are noted in bar.broken.
-    void end_box(Bar& bar) {
-        if (voxels_.facets.size() > kWorthwhile) measure(bar);
-    }
-    void measure(Bar& bar) {
-        Bar* const judged = std::isfinite(limit_) ? &bar : nullptr;
-        measure(voxels_, !world_ || !options_.in_world ? judged : nullptr);
-        if (world_) measure(*world_, options_.in_world ? judged : nullptr);
-        boxes_.clear();
-        crossings_ = 0;
-    }
+    // Goes to the bar's box of this number, counted over its boxes of several cells. Its dropped crossings are `count`
+    // of edges.dropped() from `first` on, and it has this many triangles. May measure the boxes before it.
+    void begin_box(std::size_t number, std::size_t first, std::size_t count, std::size_t triangles, Bar& bar);
+    // Adds a triangle; corners in samples, relative to the box's low end.
+    void add(const Spot& a, const Spot& b, const Spot& c);
+    void end_box(Bar& bar);
 
-    // Adds to a bar what was measured since the last time.
-    void take(Bar& bar) {
-        isocore::climbing::add(bar.in_voxels, voxels_.tally.sum_up(1));
-        isocore::climbing::add(bar.in_world, (world_ ? *world_ : voxels_).tally.sum_up(unit_));
-        voxels_.tally = {};
-        if (world_) world_->tally = {};
-    }
+    // Measures the boxes that were begun and are not measured yet, and appends the numbers of those that break the
+    // bound to bar.broken.
+    void measure(Bar& bar);
+
+    // Adds to the bar's deviations what was measured since the last call.
+    void take(Bar& bar);
 
   private:
     using Numbers = Lanes<float>;
-    using Row = std::array<float, BoxEdges::kMostEdges + kLanes<float>>;
-    static constexpr Spot kNoStretch{1, 1, 1};
-    static constexpr std::size_t kWorthwhile = 96, kPlacedAtOnce = 256;  // triangles; crossings
-    static_assert(Facets::kRoom >= BoxEdges::kMostOfBox);
+    using PerCrossing = std::array<float, BoxEdges::kMostEdges + kLanes<float>>;
+    static constexpr std::size_t kPlacedAtOnce = 256;  // crossings
 
-    struct Box {
+    struct WaitingBox {
         std::size_t number, triangles, first, crossings;
     };
-
-    static Spot stretched(const Spot& place, const Spot& stretch) {
-        return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
-    }
-
     // What is measured in voxels, or in the world.
     struct Measured {
         Tally tally;
         Facets facets;
-        Vector<Row> places;  // of the crossings
+        Vector<PerCrossing> places;  // of edges.dropped()
     };
 
-    void measure(Measured& measured, Bar* bar) {
-        auto& [tally, facets, places] = measured;
-        facets.find_frames();
-        std::size_t triangle = 0, crossing = 0;
-        for (const Box& box : boxes_) {
-            float* const squared = squared_.data() + crossing;
-            const Vector<const float*> points{places[0].data() + box.first, places[1].data() + box.first,
-                                              places[2].data() + box.first};
-            facets.squared_distances(triangle, box.triangles, points, box.crossings, squared);
-            if (bar && std::sqrt(*std::max_element(squared, squared + box.crossings)) > limit_)
-                bar->broken.push_back(box.number);
-            triangle += box.triangles;
-            crossing += box.crossings;
-        }
-        for (std::size_t n = 0; n < crossing; n += kLanes<float>) {
-            const Numbers squared =
-                first_lanes(Numbers(squared_.data() + n), std::min(kLanes<float>, crossing - n), 0.0f);
-            tally.add(root(squared), squared);
-        }
-        facets.clear();
-    }
+    void measure(Measured& measured, Bar* bar);
 
     const Options& options_;
-    double unit_;   // of distances in the world: small numbers would have their squares lost
+    double unit_;   // of lengths in the world: the longest spacing, as squares of very small numbers would underflow
     Spot stretch_;  // from samples to that unit
-    float limit_;
-    std::vector<Box> boxes_;
-    std::size_t crossings_ = 0;  // of these
+    float limit_;   // the error bound, in voxels or in that unit
+    std::vector<WaitingBox> boxes_;
+    std::size_t crossings_ = 0;  // of all these boxes
     Spotter<kPlacedAtOnce> spotter_;
-    Row squared_;  // distances
+    PerCrossing squared_;  // distances
     Measured voxels_;
-    std::unique_ptr<Measured> world_;  // where a voxel is not as long along all axes
+    std::unique_ptr<Measured> world_;  // null where a voxel is equally long along all axes: then voxels_ tells both
 };
 
 }  // namespace isocore::climbing

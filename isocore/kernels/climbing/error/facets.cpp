@@ -1,0 +1,107 @@
+#include "climbing/error/facets.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace isocore::climbing {
+
+void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
+    if (size_ % kLanes<float> == 0) {  // no lane of a register may be uninitialised
+        for (std::size_t n = 0; n < 9; ++n) Numbers(0.0f).store(columns_[kCornerA + n].data() + size_);
+    }
+    const std::array<const Spot*, 3> corners{&a, &b, &c};
+    for (std::size_t n = 0; n < 9; ++n) columns_[kCornerA + n][size_] = (*corners[n / 3])[n % 3];
+    ++size_;
+}
+
+void Facets::find_frames() {
+    for (std::size_t first = 0; first < size_; first += kLanes<float>) find_frames(first);
+}
+
+// The frames of triangle `first` and of those that follow it, one in each lane. The axis v is found by Gram-Schmidt
+// orthogonalisation: from the side a c, its part along u is subtracted. Triangles may be a thousand times longer than
+// wide; then one pass leaves a rest along u by rounding that is large beside v, and a second pass removes it.
+void Facets::find_frames(std::size_t first) {
+    const auto corner = [&](std::size_t column) -> Vector<Numbers> {
+        return {in_lanes(column, first), in_lanes(column + 1, first), in_lanes(column + 2, first)};
+    };
+    const auto a = corner(kCornerA), bottom = minus(corner(kCornerB), a), left = minus(corner(kCornerC), a);
+    const Numbers one(1.0f), length = root(dot(bottom, bottom));
+    const auto axis_u = times(one / length, bottom);
+    const Numbers top_u = dot(left, axis_u);
+    const auto one_pass = minus(left, times(top_u, axis_u)),
+               rise = minus(one_pass, times(dot(one_pass, axis_u), axis_u));
+    const Numbers top_v = root(dot(rise, rise));
+    const auto axis_v = times(one / top_v, rise), axis_h = cross(axis_u, axis_v);
+
+    const auto set = [&](std::size_t column, const Numbers& numbers) {
+        numbers.store(columns_[column].data() + first);
+    };
+    for (std::size_t n = 0; n < 3; ++n) {
+        set(kAxisU + n, axis_u[n]);
+        set(kAxisV + n, axis_v[n]);
+        set(kAxisH + n, axis_h[n]);
+    }
+    set(kLength, length);
+    set(kTopU, top_u);
+    set(kTopV, top_v);
+    set(kPerRight, one / (top_v * top_v + (top_u - length) * (top_u - length)));
+    set(kPerLeft, one / (top_v * top_v + top_u * top_u));
+}
+
+void Facets::squared_distances(std::size_t first, std::size_t count, const Vector<const float*>& points,
+                               std::size_t size, float* out) const {
+    // Lanes hold triangles or points, whichever takes fewer registers in all. The bits that come out are the same.
+    const auto registers = [](std::size_t n) { return (n + kLanes<float> - 1) / kLanes<float>; };
+    if (size * registers(count) < registers(size) * count) {
+        for (std::size_t n = 0; n < size; ++n)
+            out[n] = from_point(first, count, {points[0][n], points[1][n], points[2][n]});
+    } else {
+        for (std::size_t n = 0; n < size; n += kLanes<float>) {
+            from_points(first, count, {Numbers(points[0] + n), Numbers(points[1] + n), Numbers(points[2] + n)})
+                .store(out + n);
+        }
+    }
+}
+
+// From several points, one in each lane, to the nearest triangle: one triangle after the other.
+auto Facets::from_points(std::size_t first, std::size_t count, const Vector<Numbers>& points) const -> Numbers {
+    Numbers best(std::numeric_limits<float>::infinity());
+    for (std::size_t n = first; n < first + count; ++n)
+        best = least(best, squared_distances([&](std::size_t column) { return Numbers(columns_[column][n]); }, points));
+    return best;
+}
+
+// From one point, in all lanes, to the nearest triangle: several triangles at once.
+float Facets::from_point(std::size_t first, std::size_t count, const Vector<Numbers>& point) const {
+    const Numbers infinity(std::numeric_limits<float>::infinity());
+    Numbers best = infinity;
+    for (std::size_t n = 0; n < count; n += kLanes<float>) {
+        const Numbers to_each =
+            squared_distances([&](std::size_t column) { return in_lanes(column, first + n); }, point);
+        best = least(best, first_lanes(to_each, std::min(kLanes<float>, count - n), infinity));
+    }
+    return best.least_lane();
+}
+
+// get(column): of one triangle in all lanes, or of one triangle in each.
+template <class Get>
+auto Facets::squared_distances(const Get& get, const Vector<Numbers>& points) -> Numbers {
+    const auto vector = [&](std::size_t column) -> Vector<Numbers> {
+        return {get(column), get(column + 1), get(column + 2)};
+    };
+    const auto squared = [](const Numbers& a, const Numbers& b) { return a * a + b * b; };
+    const auto clamped = [](const Numbers& a) { return least(Numbers(1.0f), greatest(Numbers(0.0f), a)); };
+    const Numbers zero(0.0f), length = get(kLength), top_u = get(kTopU), top_v = get(kTopV), base = top_u - length;
+    const auto from_corner = minus(points, vector(kCornerA));
+    const Numbers u = dot(from_corner, vector(kAxisU)), v = dot(from_corner, vector(kAxisV)),
+                  h = dot(from_corner, vector(kAxisH)), beyond = u - length, rise = v * top_v;
+    // t and s: how far along the right and the left side, from 0 at the bottom to 1 at the top, the nearest point is.
+    const Numbers t = clamped((beyond * base + rise) * get(kPerRight)), s = clamped((u * top_u + rise) * get(kPerLeft));
+    const Numbers bottom = squared(u - least(length, greatest(zero, u)), v),
+                  right = squared(beyond - t * base, v - t * top_v), left = squared(u - s * top_u, v - s * top_v);
+    const auto inside = (zero <= v) & (beyond * top_v <= v * base) & (v * top_u <= u * top_v);
+    return h * h + choose(inside, zero, least(bottom, least(right, left)));
+}
+
+}  // namespace isocore::climbing
