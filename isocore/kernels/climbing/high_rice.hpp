@@ -1,4 +1,5 @@
-// high_rice.hpp - A highrice is a box of cells that gets its triangles in one piece: the surface cuts a disk from it.
+// high_rice.hpp - A highrice is a box of cells that gets its triangles in one piece, as the surface cuts one disk from
+// it.
 #pragma once
 
 #include <array>
@@ -7,11 +8,12 @@
 
 namespace isocore::climbing {
 
-// In samples from its block's origin; both ends belong to it.
+// The box's first and last sample along each axis, counted from its block's origin; at most 32. A part of a block that
+// lies past the volume's end has length 0 along some axis, and is no highrice.
 struct HighRice {
     std::array<std::uint8_t, 3> low, high;
 
-    int length(std::size_t axis) const { return high[axis] - low[axis]; }
+    int length(std::size_t axis) const { return high[axis] - low[axis]; }  // cells
     bool operator==(const HighRice&) const = default;
 };
 

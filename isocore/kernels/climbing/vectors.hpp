@@ -1,4 +1,4 @@
-// vectors.hpp - The little geometry that climbing needs.
+// vectors.hpp - Vectors of three numbers: floats, doubles, or several floats at once (common/lanes.hpp).
 #pragma once
 
 #include <array>
@@ -8,7 +8,8 @@ namespace isocore::climbing {
 template <class Number>
 using Vector = std::array<Number, 3>;
 
-// A place in or near one block, where numbers are small.
+// A place as float32, in samples from an origin near by: a block's or a box's, so that few bits are spent on whole
+// samples.
 using Spot = Vector<float>;
 
 template <class Number>
