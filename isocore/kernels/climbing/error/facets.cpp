@@ -5,15 +5,6 @@
 
 namespace isocore::climbing {
 
-void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
-    if (size_ % kLanes<float> == 0) {  // no lane of a register may be uninitialised
-        for (std::size_t n = 0; n < 9; ++n) Numbers(0.0f).store(columns_[kCornerA + n].data() + size_);
-    }
-    const std::array<const Spot*, 3> corners{&a, &b, &c};
-    for (std::size_t n = 0; n < 9; ++n) columns_[kCornerA + n][size_] = (*corners[n / 3])[n % 3];
-    ++size_;
-}
-
 void Facets::find_frames() {
     for (std::size_t first = 0; first < size_; first += kLanes<float>) find_frames(first);
 }

@@ -67,4 +67,14 @@ class Facets {
     std::array<std::array<float, kRoom + kLanes<float>>, kColumns> columns_;  // by column, then by triangle
 };
 
+// Inline, as it is called for every triangle.
+inline void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
+    if (size_ % kLanes<float> == 0) {  // no lane of a register may be uninitialised
+        for (std::size_t n = 0; n < 9; ++n) Numbers(0.0f).store(columns_[kCornerA + n].data() + size_);
+    }
+    const std::array<const Spot*, 3> corners{&a, &b, &c};
+    for (std::size_t n = 0; n < 9; ++n) columns_[kCornerA + n][size_] = (*corners[n / 3])[n % 3];
+    ++size_;
+}
+
 }  // namespace isocore::climbing

@@ -10,10 +10,6 @@ constexpr Spot kNoStretch{1, 1, 1};
 constexpr std::size_t kWorthwhile = 96;  // so many triangles are measured at once
 static_assert(Facets::kRoom >= BoxEdges::kMostOfBox);
 
-Spot stretched(const Spot& place, const Spot& stretch) {
-    return {place[0] * stretch[0], place[1] * stretch[1], place[2] * stretch[2]};
-}
-
 }  // namespace
 
 Ruler::Ruler(const SampleReader& samples, const Options& options)
@@ -53,11 +49,6 @@ void Ruler::begin_box(std::size_t number, std::size_t first, std::size_t count, 
     if (voxels_.facets.size() + triangles > Facets::kRoom || crossings_ + count > BoxEdges::kMostEdges) measure(bar);
     boxes_.push_back({number, triangles, first, count});
     crossings_ += count;
-}
-
-void Ruler::add(const Spot& a, const Spot& b, const Spot& c) {
-    voxels_.facets.add(a, b, c);
-    if (world_) world_->facets.add(stretched(a, stretch_), stretched(b, stretch_), stretched(c, stretch_));
 }
 
 void Ruler::end_box(Bar& bar) {

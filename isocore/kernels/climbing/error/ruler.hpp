@@ -57,6 +57,9 @@ class Ruler {
     };
 
     void measure(Measured& measured, Bar* bar);
+    Spot stretched(const Spot& place) const {
+        return {place[0] * stretch_[0], place[1] * stretch_[1], place[2] * stretch_[2]};
+    }
 
     const Options& options_;
     double unit_;   // of lengths in the world: the longest spacing, as squares of very small numbers would underflow
@@ -69,5 +72,11 @@ class Ruler {
     Measured voxels_;
     std::unique_ptr<Measured> world_;  // null where a voxel is equally long along all axes: then voxels_ tells both
 };
+
+// Inline, as it is called for every triangle.
+inline void Ruler::add(const Spot& a, const Spot& b, const Spot& c) {
+    voxels_.facets.add(a, b, c);
+    if (world_) world_->facets.add(stretched(a), stretched(b), stretched(c));
+}
 
 }  // namespace isocore::climbing
