@@ -25,7 +25,7 @@ void DrawnSite::load(std::size_t x) {
     const std::uint64_t own = ends_grid[0] ? ~std::uint64_t{0} : (std::uint64_t{1} << cells[0]) - 1;
     for (const Edge& start : crossed_rows()) {
         const std::size_t row = row_index(start.at(1), start.at(2)), axis = start.axis();
-        const auto& here = row(start.at(1), start.at(2));
+        const auto& here = this->row(start.at(1), start.at(2));
         const std::uint64_t crossed = here.crossed[axis], kept = layout_->kept(crossed, here.first_crossing[axis]);
         KeptRow& out = kept_rows_[row];
         out.kept[axis] = kept;
