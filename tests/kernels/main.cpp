@@ -3,6 +3,7 @@
 
 void test_bits();
 void test_crossing();
+void test_lanes();
 void test_signs();
 void test_halvings();
 void test_facets();
@@ -17,6 +18,7 @@ void test_thinning();
 int main() {
     test_bits();
     test_crossing();
+    test_lanes();
     test_signs();
     test_halvings();
     test_facets();

@@ -1,5 +1,6 @@
-// lanes.hpp - Eight floats or four doubles at once. Every operation is that of its numbers one by one, so results are
-// the same bits with and without wide registers.
+// lanes.hpp - Eight floats at once. Every operation is that of its floats one by one and never fused with another, so
+// results are the same bits with every compiler and on every processor. Only which of the many NaNs an operation yields
+// is up to them.
 #pragma once
 
 #include <array>
@@ -7,9 +8,19 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <utility>
 
 #if defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define ISOCORE_VECTOR_TYPES
+#endif
 #endif
 
 namespace isocore {
@@ -17,270 +28,259 @@ namespace isocore {
 template <class T>
 inline constexpr std::size_t kLanes = 32 / sizeof(T);
 
-template <class T>
-inline constexpr auto kLaneNumbers = [] {
-    std::array<T, kLanes<T>> numbers;
-    for (std::size_t n = 0; n < numbers.size(); ++n) numbers[n] = static_cast<T>(n);
-    return numbers;
-}();
+// The lanes of one register; a single one where the compiler has no vector types (MSVC, GCC before 12). A vector type
+// of eight lanes would do everywhere, but where registers are narrower, GCC compares its lanes one after the other.
+#if !defined(ISOCORE_VECTOR_TYPES)
+inline constexpr std::size_t kRegisterLanes = 1;
+#elif defined(__AVX2__)
+inline constexpr std::size_t kRegisterLanes = 8;
+#else
+inline constexpr std::size_t kRegisterLanes = 4;
+#endif
+
+// The types of a register, and what there is no operator for. Comparisons of `Reals` yield `Ints` that are 0 in the
+// lanes where they do not hold.
+template <std::size_t width>
+struct Register;
+
+template <>
+struct Register<1> {
+    using Reals = float;
+    using Ints = std::int32_t;
+    static Reals moved_up(Reals, Reals next) { return next; }
+    static Reals roots(Reals a) { return std::sqrt(a); }
+    static unsigned bits(Ints mask) { return mask != 0; }
+};
+
+#if defined(ISOCORE_VECTOR_TYPES)
+template <std::size_t width>
+struct VectorTypes {  // apart from Register, as GCC cannot index them in the template that declares them
+    typedef float Reals __attribute__((vector_size(4 * width)));
+    typedef std::int32_t Ints __attribute__((vector_size(4 * width)));
+};
+
+template <std::size_t width>
+struct Register {
+    using Reals = typename VectorTypes<width>::Reals;
+    using Ints = typename VectorTypes<width>::Ints;
+    using Places = std::make_index_sequence<width>;
+
+    // The lanes of `a` after its first, then the first lane of `next`.
+    static Reals moved_up(Reals a, Reals next) {
+        return [&]<std::size_t... n>(std::index_sequence<n...>) {
+            return __builtin_shufflevector(a, next, (n + 1)...);
+        }(Places());
+    }
+    // Lanes that are `distance` apart, a power of two, change places.
+    template <std::size_t distance>
+    static Reals swapped(Reals a) {
+        return [&]<std::size_t... n>(std::index_sequence<n...>) {
+            return __builtin_shufflevector(a, a, (n ^ distance)...);
+        }(Places());
+    }
+    // Compilers make a single instruction of this loop.
+    static Reals roots(Reals a) {
+        for (std::size_t n = 0; n < width; ++n) a[n] = std::sqrt(a[n]);
+        return a;
+    }
+    // One bit a lane: does the comparison hold there?
+    static unsigned bits(Ints mask) {
+#if defined(__AVX2__)
+        if constexpr (width == 8) return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
+#endif
+#if defined(__SSE2__)
+        if constexpr (width == 4) return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#endif
+        unsigned out = 0;
+        for (std::size_t n = 0; n < width; ++n) out |= static_cast<unsigned>(mask[n]) & 1u << n;
+        return out;
+    }
+};
+#endif
+
+// rule(n) of each register that eight lanes take.
+template <class Type, class Rule>
+std::array<Type, kLanes<float> * sizeof(float) / sizeof(Type)> each_register(const Rule& rule) {
+    std::array<Type, kLanes<float> * sizeof(float) / sizeof(Type)> out;
+    for (std::size_t n = 0; n < out.size(); ++n) out[n] = static_cast<Type>(rule(n));
+    return out;
+}
+
+// In which lanes a comparison holds.
+template <std::size_t width>
+struct LaneMask {
+    using Ints = typename Register<width>::Ints;
+    std::array<Ints, kLanes<float> / width> registers;
+
+    friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
+        return {each_register<Ints>([&](std::size_t n) { return a.registers[n] & b.registers[n]; })};
+    }
+    friend LaneMask operator|(const LaneMask& a, const LaneMask& b) {
+        return {each_register<Ints>([&](std::size_t n) { return a.registers[n] | b.registers[n]; })};
+    }
+    bool any() const { return bits() != 0; }
+    // The first lane's bit is the lowest.
+    unsigned bits() const {
+        unsigned out = 0;
+        for (std::size_t n = 0; n < registers.size(); ++n) out |= Register<width>::bits(registers[n]) << n * width;
+        return out;
+    }
+};
 
 #if defined(__AVX2__)
-
-// By the lanes of a mask, one bit each: their numbers, first of all.
+// For each mask: the numbers of the lanes whose bits are set, in order, then zeros.
 inline constexpr auto kPackedLanes = [] {
-    std::array<std::array<std::int32_t, 8>, 256> order{};
-    for (unsigned mask = 0; mask < 256; ++mask) {
+    std::array<std::array<std::int32_t, kLanes<float>>, 256> order{};
+    for (unsigned bits = 0; bits < order.size(); ++bits) {
         std::size_t next = 0;
         for (std::int32_t lane = 0; lane < 8; ++lane) {
-            if (mask >> lane & 1) order[mask][next++] = lane;
+            if (bits >> lane & 1) order[bits][next++] = lane;
         }
     }
     return order;
 }();
-
-template <class T>
-struct LaneRegister;
-template <>
-struct LaneRegister<float> {
-    using Type = __m256;
-    static Type load(const float* from) { return _mm256_loadu_ps(from); }
-    static Type all(float value) { return _mm256_set1_ps(value); }
-    static void store(float* to, Type a) { _mm256_storeu_ps(to, a); }
-    static Type add(Type a, Type b) { return _mm256_add_ps(a, b); }
-    static Type subtract(Type a, Type b) { return _mm256_sub_ps(a, b); }
-    static Type multiply(Type a, Type b) { return _mm256_mul_ps(a, b); }
-    static Type divide(Type a, Type b) { return _mm256_div_ps(a, b); }
-    static Type root(Type a) { return _mm256_sqrt_ps(a); }
-    static Type least(Type a, Type b) { return _mm256_min_ps(b, a); }
-    static Type greatest(Type a, Type b) { return _mm256_max_ps(b, a); }
-    static Type less(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
-    static Type not_above(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
-    static Type equal(Type a, Type b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
-    static Type both(Type a, Type b) { return _mm256_and_ps(a, b); }
-    static Type either(Type a, Type b) { return _mm256_or_ps(a, b); }
-    static Type disjoint(Type a, Type b) {
-        return _mm256_castsi256_ps(
-            _mm256_cmpeq_epi32(_mm256_castps_si256(_mm256_and_ps(a, b)), _mm256_setzero_si256()));
-    }
-    static Type tagged(Type a) {
-        const Type lanes = _mm256_castsi256_ps(_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-        return _mm256_or_ps(_mm256_and_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(~7))), lanes);
-    }
-    static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_ps(b, a, mask); }
-    static bool any(Type mask) { return _mm256_movemask_ps(mask) != 0; }
-    static unsigned bits(Type mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
-    static float first(Type a) { return _mm256_cvtss_f32(a); }
-    static Type rotate(Type a) { return _mm256_permutevar8x32_ps(a, _mm256_setr_epi32(1, 2, 3, 4, 5, 6, 7, 0)); }
-    template <std::size_t distance>
-    static Type swap(Type a) {
-        if constexpr (distance == 4)
-            return _mm256_permute2f128_ps(a, a, 1);
-        else
-            return _mm256_permute_ps(a, distance == 2 ? 0x4e : 0xb1);
-    }
-    static void pack(Type a, unsigned bits, float* to) {
-        const auto order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPackedLanes[bits].data()));
-        _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, order));
-    }
-};
-template <>
-struct LaneRegister<double> {
-    using Type = __m256d;
-    static Type load(const double* from) { return _mm256_loadu_pd(from); }
-    static Type all(double value) { return _mm256_set1_pd(value); }
-    static void store(double* to, Type a) { _mm256_storeu_pd(to, a); }
-    static Type add(Type a, Type b) { return _mm256_add_pd(a, b); }
-    static Type subtract(Type a, Type b) { return _mm256_sub_pd(a, b); }
-    static Type multiply(Type a, Type b) { return _mm256_mul_pd(a, b); }
-    static Type divide(Type a, Type b) { return _mm256_div_pd(a, b); }
-    static Type root(Type a) { return _mm256_sqrt_pd(a); }
-    static Type least(Type a, Type b) { return _mm256_min_pd(b, a); }
-    static Type greatest(Type a, Type b) { return _mm256_max_pd(b, a); }
-    static Type less(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-    static Type not_above(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-    static Type equal(Type a, Type b) { return _mm256_cmp_pd(a, b, _CMP_EQ_OQ); }
-    static Type both(Type a, Type b) { return _mm256_and_pd(a, b); }
-    static Type either(Type a, Type b) { return _mm256_or_pd(a, b); }
-    static Type choose(Type mask, Type a, Type b) { return _mm256_blendv_pd(b, a, mask); }
-    static bool any(Type mask) { return _mm256_movemask_pd(mask) != 0; }
-};
-
-#else
-
-// A mask is 1 in its true lanes and 0 in the others.
-template <class T>
-struct LaneRegister {
-    using Type = std::array<T, kLanes<T>>;
-    template <class Rule>
-    static Type each(const Rule& rule) {
-        Type out;
-        for (std::size_t n = 0; n < kLanes<T>; ++n) out[n] = rule(n);
-        return out;
-    }
-    static Type load(const T* from) {
-        return each([&](std::size_t n) { return from[n]; });
-    }
-    static Type all(T value) {
-        return each([&](std::size_t) { return value; });
-    }
-    static void store(T* to, const Type& a) {
-        each([&](std::size_t n) { return to[n] = a[n]; });
-    }
-    static Type add(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return a[n] + b[n]; });
-    }
-    static Type subtract(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return a[n] - b[n]; });
-    }
-    static Type multiply(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return a[n] * b[n]; });
-    }
-    static Type divide(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return a[n] / b[n]; });
-    }
-    static Type root(const Type& a) {
-        return each([&](std::size_t n) { return std::sqrt(a[n]); });
-    }
-    static Type least(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return b[n] < a[n] ? b[n] : a[n]; });
-    }
-    static Type greatest(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return b[n] > a[n] ? b[n] : a[n]; });
-    }
-    static Type less(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return T(a[n] < b[n]); });
-    }
-    static Type not_above(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return T(a[n] <= b[n]); });
-    }
-    static Type equal(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return T(a[n] == b[n]); });
-    }
-    static Type disjoint(const Type& a, const Type& b) {
-        return each([&](std::size_t n) {
-            return T((std::bit_cast<std::uint32_t>(a[n]) & std::bit_cast<std::uint32_t>(b[n])) == 0);
-        });
-    }
-    static Type tagged(const Type& a) {
-        return each([&](std::size_t n) {
-            return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a[n]) & ~7u) | static_cast<std::uint32_t>(n));
-        });
-    }
-    static Type both(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return a[n] * b[n]; });
-    }
-    static Type either(const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return T(a[n] + b[n] > 0); });
-    }
-    static Type choose(const Type& mask, const Type& a, const Type& b) {
-        return each([&](std::size_t n) { return mask[n] != 0 ? a[n] : b[n]; });
-    }
-    static bool any(const Type& mask) { return bits(mask) != 0; }
-    static T first(const Type& a) { return a[0]; }
-    static Type rotate(const Type& a) {
-        return each([&](std::size_t n) { return a[(n + 1) % kLanes<T>]; });
-    }
-    template <std::size_t distance>
-    static Type swap(const Type& a) {
-        return each([&](std::size_t n) { return a[n ^ distance]; });
-    }
-    static unsigned bits(const Type& mask) {
-        unsigned out = 0;
-        for (std::size_t n = 0; n < kLanes<T>; ++n) out |= static_cast<unsigned>(mask[n] != 0) << n;
-        return out;
-    }
-    static void pack(const Type& a, unsigned bits, T* to) {
-        for (std::size_t n = 0; n < kLanes<T>; ++n) {
-            *to = a[n];
-            to += bits >> n & 1;
-        }
-    }
-};
-
 #endif
 
-// The result of a comparison of Lanes.
-template <class T>
-struct LaneMask {
-    using Register = LaneRegister<T>;
-    typename Register::Type lanes;
-    friend LaneMask operator&(const LaneMask& a, const LaneMask& b) { return {Register::both(a.lanes, b.lanes)}; }
-    friend LaneMask operator|(const LaneMask& a, const LaneMask& b) { return {Register::either(a.lanes, b.lanes)}; }
-    bool any() const { return Register::any(lanes); }
-    unsigned bits() const { return Register::bits(lanes); }
-};
+// Eight floats in registers of `width` lanes.
+template <std::size_t width>
+class FloatLanes {
+  public:
+    using Mask = LaneMask<width>;
 
-template <class T>
-struct Lanes {
-    using Register = LaneRegister<T>;
-    typename Register::Type lanes;
-
-    Lanes() = default;
-    Lanes(T value) : lanes(Register::all(value)) {}
-    explicit Lanes(typename Register::Type given) : lanes(given) {}
-    explicit Lanes(const T* from) : lanes(Register::load(from)) {}
-    void store(T* to) const { Register::store(to, lanes); }
-    std::array<T, kLanes<T>> each() const {
-        std::array<T, kLanes<T>> out;
-        Register::store(out.data(), lanes);
-        return out;
+    FloatLanes() = default;
+    FloatLanes(float value) {
+        for (Reals& some : registers_) some = value - Reals{};  // to all lanes; less 0 keeps every value, -0 as well
+    }
+    explicit FloatLanes(const float* from) { std::memcpy(&registers_, from, sizeof registers_); }
+    void store(float* to) const { std::memcpy(to, &registers_, sizeof registers_); }
+    std::array<float, kLanes<float>> each() const {
+        return std::bit_cast<std::array<float, kLanes<float>>>(registers_);
+    }
+    float first() const { return each()[0]; }
+    // Writes the lanes whose bits are set, one after the other. It may write as many floats as there are lanes: what
+    // follows in `to` is lost.
+    void pack(unsigned bits, float* to) const {
+#if defined(__AVX2__)
+        if constexpr (width == kLanes<float>) {
+            const auto order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPackedLanes[bits].data()));
+            return _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(registers_[0], order));
+        }
+#endif
+        for (const float lane : each()) {
+            *to = lane;
+            to += bits & 1;
+            bits >>= 1;
+        }
     }
 
-    T first() const { return Register::first(lanes); }
-    // Each lane where the one before was, and the first one last.
-    Lanes rotated() const { return Lanes(Register::rotate(lanes)); }
+    friend FloatLanes operator+(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return a.registers_[n] + b.registers_[n]; });
+    }
+    friend FloatLanes operator-(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return a.registers_[n] - b.registers_[n]; });
+    }
+    friend FloatLanes operator*(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return a.registers_[n] * b.registers_[n]; });
+    }
+    friend FloatLanes operator/(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return a.registers_[n] / b.registers_[n]; });
+    }
+    friend FloatLanes root(const FloatLanes& a) {
+        return by([&](std::size_t n) { return Register<width>::roots(a.registers_[n]); });
+    }
+    friend Mask operator<(const FloatLanes& a, const FloatLanes& b) {
+        return where([&](std::size_t n) { return a.registers_[n] < b.registers_[n]; });
+    }
+    friend Mask operator<=(const FloatLanes& a, const FloatLanes& b) {
+        return where([&](std::size_t n) { return a.registers_[n] <= b.registers_[n]; });
+    }
+    friend Mask operator==(const FloatLanes& a, const FloatLanes& b) {
+        return where([&](std::size_t n) { return a.registers_[n] == b.registers_[n]; });
+    }
+    // Where no bit is set in both a and b: lanes may be used as sets of up to 32.
+    friend Mask have_no_bit_in_common(const FloatLanes& a, const FloatLanes& b) {
+        return where([&](std::size_t n) { return (a.ints(n) & b.ints(n)) == 0; });
+    }
 
-    // The rule over all lanes: first of those that are half of all apart, at last of neighbours.
-    template <class Rule>
-    T fold(const Rule& rule) const {
-        return folded<kLanes<T> / 2>(*this, rule);
+    friend FloatLanes choose(const Mask& mask, const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return mask.registers[n] ? a.registers_[n] : b.registers_[n]; });
     }
-    T sum() const {
-        return fold([](const Lanes& a, const Lanes& b) { return a + b; });
+    // b where it is less than a, otherwise a. So NaN in b yields a, NaN in a stays NaN, and of 0 and -0 it is a.
+    friend FloatLanes least(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return b.registers_[n] < a.registers_[n] ? b.registers_[n] : a.registers_[n]; });
     }
-    T least_lane() const {
-        return fold([](const Lanes& a, const Lanes& b) { return least(a, b); });
+    // b where it is greater than a, otherwise a: with NaN and zeros as `least`.
+    friend FloatLanes greatest(const FloatLanes& a, const FloatLanes& b) {
+        return by([&](std::size_t n) { return b.registers_[n] > a.registers_[n] ? b.registers_[n] : a.registers_[n]; });
     }
-    T greatest_lane() const {
-        return fold([](const Lanes& a, const Lanes& b) { return greatest(a, b); });
-    }
-
-    // Writes the lanes that have a bit, one after the other; what follows them in the room for all lanes is lost.
-    void pack(unsigned bits, T* to) const { Register::pack(lanes, bits, to); }
-
-    friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(Register::add(a.lanes, b.lanes)); }
-    friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(Register::subtract(a.lanes, b.lanes)); }
-    friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(Register::multiply(a.lanes, b.lanes)); }
-    friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(Register::divide(a.lanes, b.lanes)); }
-    friend Lanes root(const Lanes& a) { return Lanes(Register::root(a.lanes)); }
-    friend LaneMask<T> operator<(const Lanes& a, const Lanes& b) { return {Register::less(a.lanes, b.lanes)}; }
-    friend LaneMask<T> operator<=(const Lanes& a, const Lanes& b) { return {Register::not_above(a.lanes, b.lanes)}; }
-    friend LaneMask<T> operator==(const Lanes& a, const Lanes& b) { return {Register::equal(a.lanes, b.lanes)}; }
-    // Of floats: have their bits none in common?
-    friend LaneMask<T> have_no_bit_in_common(const Lanes& a, const Lanes& b) {
-        return {Register::disjoint(a.lanes, b.lanes)};
-    }
-    // Floats with their lane in the last three bits: the least one tells where it is.
-    friend Lanes tagged(const Lanes& a) { return Lanes(Register::tagged(a.lanes)); }
     // The first `count` lanes of a, and the others of b.
-    friend Lanes first_lanes(const Lanes& a, std::size_t count, const Lanes& b) {
-        return choose(Lanes(kLaneNumbers<T>.data()) < static_cast<T>(count), a, b);
+    friend FloatLanes first_lanes(const FloatLanes& a, std::size_t count, const FloatLanes& b) {
+        static constexpr std::array<float, kLanes<float>> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
+        return choose(FloatLanes(kNumbers.data()) < static_cast<float>(count), a, b);
     }
-    friend Lanes choose(const LaneMask<T>& mask, const Lanes& a, const Lanes& b) {
-        return Lanes(Register::choose(mask.lanes, a.lanes, b.lanes));
+    // The lanes with their numbers, 0 to 7, in place of their last three bits: so the least lane tells which it was.
+    friend FloatLanes tagged(const FloatLanes& a) {
+        static constexpr std::array<std::int32_t, kLanes<float>> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
+        const auto numbers = std::bit_cast<std::array<Ints, kLanes<float> / width>>(kNumbers);
+        return by([&](std::size_t n) { return std::bit_cast<Reals>((a.ints(n) & ~7) | numbers[n]); });
     }
-    // Lanes of b that are no numbers are passed over.
-    friend Lanes least(const Lanes& a, const Lanes& b) { return Lanes(Register::least(a.lanes, b.lanes)); }
-    friend Lanes greatest(const Lanes& a, const Lanes& b) { return Lanes(Register::greatest(a.lanes, b.lanes)); }
+
+    // Lanes 1 to 7, then lane 0.
+    FloatLanes rotated() const {
+        return by([&](std::size_t n) {
+            return Register<width>::moved_up(registers_[n], registers_[(n + 1) % registers_.size()]);
+        });
+    }
+    // Sums depend on their order: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7)), lanes by number. So do least and greatest,
+    // where there are NaNs.
+    float sum() const {
+        return fold<4>(*this, [](const FloatLanes& a, const FloatLanes& b) { return a + b; });
+    }
+    float least_lane() const {
+        return fold<4>(*this, [](const FloatLanes& a, const FloatLanes& b) { return least(a, b); });
+    }
+    float greatest_lane() const {
+        return fold<4>(*this, [](const FloatLanes& a, const FloatLanes& b) { return greatest(a, b); });
+    }
 
   private:
-    template <std::size_t distance, class Rule>
-    static T folded(const Lanes& a, const Rule& rule) {
-        if constexpr (distance == 0)
-            return Register::first(a.lanes);
-        else
-            return folded<distance / 2>(rule(a, Lanes(Register::template swap<distance>(a.lanes))), rule);
+    using Reals = typename Register<width>::Reals;
+    using Ints = typename Register<width>::Ints;
+
+    template <class Rule>
+    static FloatLanes by(const Rule& rule) {
+        FloatLanes out;
+        out.registers_ = each_register<Reals>(rule);
+        return out;
     }
+    template <class Rule>
+    static Mask where(const Rule& rule) {
+        return {each_register<Ints>(rule)};
+    }
+    Ints ints(std::size_t n) const { return std::bit_cast<Ints>(registers_[n]); }
+
+    template <std::size_t distance>
+    FloatLanes swapped() const {
+        return by([&](std::size_t n) {
+            if constexpr (distance < width)
+                return Register<width>::template swapped<distance>(registers_[n]);
+            else
+                return registers_[n ^ distance / width];
+        });
+    }
+    template <std::size_t distance, class Rule>
+    static float fold(const FloatLanes& a, const Rule& rule) {
+        if constexpr (distance == 0)
+            return a.first();
+        else
+            return fold<distance / 2>(rule(a, a.template swapped<distance>()), rule);
+    }
+
+    std::array<Reals, kLanes<float> / width> registers_;
 };
+
+using Floats = FloatLanes<kRegisterLanes>;
+template <class T>
+using Lanes = Floats;
 
 }  // namespace isocore

@@ -28,7 +28,7 @@ struct Cloud {
 using Numbers = Lanes<float>;
 
 // The lanes of a cloud from n on that lie in a closed box.
-inline LaneMask<float> within(const Extent& box, const Numbers& x, const Numbers& y, const Numbers& z) {
+inline Floats::Mask within(const Extent& box, const Numbers& x, const Numbers& y, const Numbers& z) {
     return (Numbers(box.low[0]) <= x) & (x <= box.high[0]) & (Numbers(box.low[1]) <= y) & (y <= box.high[1]) &
            (Numbers(box.low[2]) <= z) & (z <= box.high[2]);
 }
