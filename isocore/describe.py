@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,8 +13,11 @@ from isocore.backends import Field
 from isocore.extrema import count_extrema
 from isocore.histogram import Histogram, histogram
 from isocore.isovalue import Chosen, suggestions
-from isocore.readers import ReadOptions, count_volumes, read, suffix_of
+from isocore.readers import ReadOptions, count_volumes, offered_fields, read
 from isocore.volume import Volume
+
+if TYPE_CHECKING:
+    from isocore.readers.vtu_fields import FieldInfo
 
 _RAS_LETTERS = (("L", "R"), ("P", "A"), ("I", "S"))
 _NOT_ALONG_AN_AXIS = 1e-3
@@ -32,13 +35,12 @@ class Description:
 def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Description:
     """Read the file and look at it. Where it holds several volumes or fields and none is chosen, the first."""
     facts: dict[str, Any] = {}
-    if suffix_of(path) == ".vtu":
-        options = _choose_field(path, options, facts)
-    else:
-        volumes = count_volumes(path, options)
-        if volumes > 1:
-            options = replace(options, volume=options.volume or 0)
-            facts |= {"volumes": volumes, "volume": options.volume}
+    if offered := offered_fields(path):
+        options = _choose_field(offered, options, facts)
+    volumes = count_volumes(path, options)
+    if volumes > 1:
+        options = replace(options, volume=options.volume or 0)
+        facts |= {"volumes": volumes, "volume": options.volume}
     source = read(path, options)
     spread = histogram(source, threads=threads)
     facts |= _volume_facts(source) if isinstance(source, Volume) else _mesh_facts(source)
@@ -47,14 +49,10 @@ def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Descripti
     return Description(facts, spread, suggestions(spread))
 
 
-def _choose_field(path: Path, options: ReadOptions, facts: dict[str, Any]) -> ReadOptions:
-    from isocore.readers.vtu import cell_fields, point_fields
-
-    points, cells = point_fields(path), cell_fields(path)
-    facts["point fields"] = [_field_text(field.name, field.components) for field in points]
-    facts["cell fields"] = [_field_text(field.name, field.components) for field in cells]
-    offered = [*points, *cells]
-    if options.field is None and offered:
+def _choose_field(offered: tuple[FieldInfo, ...], options: ReadOptions, facts: dict[str, Any]) -> ReadOptions:
+    facts["point fields"] = [str(field) for field in offered if field.of == "points"]
+    facts["cell fields"] = [str(field) for field in offered if field.of == "cells"]
+    if options.field is None:
         options = replace(options, field=offered[0].name)
     chosen = next((field for field in offered if field.name == options.field), None)
     if chosen is not None and chosen.components > 1 and options.component is None:
@@ -62,10 +60,6 @@ def _choose_field(path: Path, options: ReadOptions, facts: dict[str, Any]) -> Re
     if options.component is not None:
         facts["component"] = options.component
     return options
-
-
-def _field_text(name: str, components: int) -> str:
-    return name if components == 1 else f"{name} ({components} components)"
 
 
 def _volume_facts(volume: Volume) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from isocore.batches.dependencies import files_of
 from isocore.pipeline import STDOUT, Job
+from isocore.readers import files_of
 
 
 def depfile_text(jobs: Iterable[Job]) -> str:

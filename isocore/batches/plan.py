@@ -13,7 +13,7 @@ from pathlib import Path, PurePath
 
 from isocore.errors import IsocoreError, OptionError
 from isocore.pipeline import STDOUT, Job, Target
-from isocore.readers import SEARCHED, count_volumes, suffix_of
+from isocore.readers import SEARCHED, count_volumes, files_of, suffix_of
 
 NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "backend", "volume")
 
@@ -64,25 +64,11 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
 def _search(folder: Path) -> Iterator[Path]:
     for here, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
-        detached = _detached(Path(here), files)
-        for name in sorted(files):
-            known = suffix_of(name)
-            if known in SEARCHED and not name.startswith(".") and name not in detached:
-                yield Path(here, name)
-
-
-def _detached(here: Path, files: list[str]) -> set[str]:
-    """Files that are the data of a header beside them."""
-    lines: list[str] = []
-    for name in files:
-        if name.lower().endswith(".nhdr"):
-            try:
-                with Path(here, name).open(encoding="latin-1") as header:
-                    lines += [line.strip() for line in header.readlines(65536)]
-            except OSError:
-                continue
-    tails = {line.split(":", 1)[1].strip() for line in lines if line.lower().startswith(("data file:", "datafile:"))}
-    return {os.path.normpath(name) for name in tails | set(lines)}
+        known = [Path(here, name) for name in sorted(files) if suffix_of(name) in SEARCHED]
+        detached = {os.path.normpath(file) for path in known for file in files_of(path)[1:]}
+        for path in known:
+            if not path.name.startswith(".") and os.path.normpath(path) not in detached:
+                yield path
 
 
 def check_template(template: str) -> None:

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 from isocore import compose
 from isocore.batches import stamps
-from isocore.batches.dependencies import files_of
 from isocore.batches.leftovers import remove_parts
 from isocore.errors import one_line
 from isocore.memory import estimated_bytes
 from isocore.pipeline import STDOUT, Job, Target, convert, failed
+from isocore.readers import files_of
 from isocore.report.record import RunReport
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from isocore import __version__
-from isocore.batches.dependencies import files_of
 from isocore.pipeline import STDOUT, Job, Target
+from isocore.readers import files_of
 from isocore.report.record import RunReport, run_as_dict, run_from_dict
 from isocore.whole_file import whole_file
 

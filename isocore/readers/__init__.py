@@ -1,75 +1,58 @@
-"""From a file to a field: which function reads which suffix.
-
-A format is a file in this folder and a row in READERS. The longest suffix wins.
-"""
+"""From a file to a field, and what is known of a file before it is read. The formats are rows of formats.py."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING
 
-from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, IsocoreError, reading
-from isocore.readers.nifti import count_nifti, read_nifti
-from isocore.readers.nrrd import count_nrrd, read_nrrd
+from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.options import ReadOptions
-from isocore.readers.raw import count_raw, read_raw
-from isocore.volume import Volume
 
-Reader: TypeAlias = Callable[[Path, ReadOptions], Volume | CellMesh]
-Counter: TypeAlias = Callable[[Path, ReadOptions], int]
-
-
-def _read_vtu(path: Path, options: ReadOptions) -> CellMesh:
-    from isocore.readers.vtu import read_vtu
-
-    return read_vtu(path, options)
-
-
-READERS: dict[str, Reader] = {
-    ".nii": read_nifti,
-    ".nii.gz": read_nifti,
-    ".hdr": read_nifti,
-    ".hdr.gz": read_nifti,
-    ".img": read_nifti,
-    ".img.gz": read_nifti,
-    ".nrrd": read_nrrd,
-    ".nhdr": read_nrrd,
-    ".raw": read_raw,
-    ".raw.gz": read_raw,
-    ".vtu": _read_vtu,
-}
-
-#: Formats that may hold several volumes, and who counts them.
-_COUNTERS: dict[Reader, Counter] = {read_nifti: count_nifti, read_nrrd: count_nrrd, read_raw: count_raw}
-
-#: What a folder is searched for: an .img is found through its .hdr.
-SEARCHED = tuple(suffix for suffix in READERS if not suffix.startswith(".img"))
+if TYPE_CHECKING:
+    from isocore.readers.vtu_fields import FieldInfo
 
 
 def suffix_of(path: os.PathLike[str] | str) -> str | None:
-    """The longest suffix of READERS that `path` ends in, in either case; None where there is none."""
+    """The longest known suffix that `path` ends in, in either case; None where there is none."""
     name = Path(path).name.lower()
-    return max((suffix for suffix in READERS if name.endswith(suffix)), key=len, default=None)
+    return max((suffix for suffix in BY_SUFFIX if name.endswith(suffix)), key=len, default=None)
 
 
-def read(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> Volume | CellMesh:
+def read(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> Field:
     """The field in `path`. Every refusal is an IsocoreError whose message starts with the path."""
     with _named(path):
-        return _reader(path)(Path(path), options or ReadOptions())
+        return _format(path).read(Path(path), options or ReadOptions())
 
 
 def count_volumes(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> int:
     """How many volumes `path` holds, by its header; 1 for a mesh."""
     with _named(path):
-        counter = _COUNTERS.get(_reader(path))
-        return counter(Path(path), options or ReadOptions()) if counter else 1
+        return _format(path).count(Path(path), options or ReadOptions())
 
 
-def _reader(path: os.PathLike[str] | str) -> Reader:
+def offered_fields(path: os.PathLike[str] | str) -> tuple[FieldInfo, ...]:
+    """What a mesh offers to contour, fields of points before those of cells; () for a volume."""
+    with _named(path):
+        return _format(path).fields(Path(path))
+
+
+def files_of(path: Path) -> tuple[Path, ...]:
+    """`path`, then the files beside it that belong to it: detached samples, a sidecar.
+
+    Never an error: where the file cannot tell, `path` stands alone, and reading it will say why.
+    """
+    suffix = suffix_of(path)
+    try:
+        return (path,) if suffix is None else (path, *BY_SUFFIX[suffix].files(path))
+    except (IsocoreError, OSError, ValueError, OverflowError):
+        return (path,)
+
+
+def _format(path: os.PathLike[str] | str) -> Format:
     if Path(path).is_dir():
         raise InputError("is a folder, not a file; name the file inside it")
     suffix = suffix_of(path)
@@ -79,7 +62,7 @@ def _reader(path: os.PathLike[str] | str) -> Reader:
         raise InputError("no such file; check the path")
     if not Path(path).stat().st_size:
         raise InputError("is empty; copy it again")
-    return READERS[suffix]
+    return BY_SUFFIX[suffix]
 
 
 @contextmanager
@@ -95,4 +78,4 @@ def _named(path: os.PathLike[str] | str) -> Iterator[None]:
             raise type(error)(f"{name}: {error}") from error
 
 
-__all__ = ["READERS", "SEARCHED", "ReadOptions", "count_volumes", "read", "suffix_of"]
+__all__ = ["SEARCHED", "ReadOptions", "count_volumes", "files_of", "offered_fields", "read", "suffix_of"]

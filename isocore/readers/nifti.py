@@ -49,6 +49,11 @@ def count_nifti(path: Path, options: ReadOptions) -> int:
     return _layout(_header(_pair(path)[0])).volumes
 
 
+def nifti_files(path: Path) -> tuple[Path, ...]:
+    """The image of a header, or the header of an image, where it is there."""
+    return tuple(file for file in _pair(path) if file not in (path, None) and file.is_file())
+
+
 def _header(path: Path) -> Any:
     with Packed(path, packing=packing_of(path)) as source:
         return parsed(source.read(LONGEST))

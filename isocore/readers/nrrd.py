@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import binascii
 import re
+from collections.abc import Iterator
 from contextlib import ExitStack
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,8 @@ _PACKINGS: dict[str, Packing] = {
 }
 #: data file: a name with one printf place for a number, first, last, step, and the axes in each.
 _NUMBERED = re.compile(r"[^%\s]*%0?\d?[du][^%\s]*(\s+-?\d+){3,4}")
+#: So many of them are looked for before the header is known to be sound: a damaged one may number billions.
+_MOST_FILES = 1 << 16
 
 
 def read_nrrd(path: Path, options: ReadOptions) -> Volume:
@@ -58,18 +62,19 @@ def count_nrrd(path: Path, options: ReadOptions) -> int:
     return axes_of(nrrd_header.parsed(path)).layout.volumes
 
 
+def nrrd_files(path: Path) -> tuple[Path, ...]:
+    """The files that hold the samples of a .nhdr, as far as they are there; also where its header is damaged."""
+    if not path.name.lower().endswith(".nhdr"):
+        return ()
+    names = islice(_names(nrrd_header.data_files_of(path)), _MOST_FILES)
+    return tuple(file for name in names if (file := path.parent / name).is_file())
+
+
 def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     """The files that hold the samples, in order, and the byte of each at which they may start."""
-    named = head.fields.get("data file")
-    if named is None:
+    if "data file" not in head.fields:
         return [(path, head.size)]
-    words = named.split()
-    if LIST.fullmatch(named):
-        names = list(head.files)
-    elif _NUMBERED.fullmatch(named):
-        names = _numbered(words, layout)
-    else:
-        names = [named]
+    names = list(_names(head, most=layout.total_bytes))
     files = [path.parent / name for name in names]
     missing = [name for name, file in zip(names, files, strict=True) if not file.is_file()]
     if missing or not files:
@@ -81,13 +86,23 @@ def _files(path: Path, head: Head, layout: Layout) -> list[tuple[Path, int]]:
     return [(file, 0) for file in files]
 
 
-def _numbered(words: list[str], layout: Layout) -> list[str]:
-    """The names that a pattern, its first and last number and their step stand for."""
-    first, last, step = (int(word) for word in words[1:4])
+def _names(head: Head, *, most: int | None = None) -> Iterator[str]:
+    """The names of the data files, in order. most: of numbered ones."""
+    named = head.fields.get("data file", "")
+    if LIST.fullmatch(named):
+        yield from head.files
+    elif _NUMBERED.fullmatch(named):
+        pattern, *numbers = named.split()
+        yield from (pattern % number for number in _numbers(*map(int, numbers[:3]), most=most))
+    else:
+        yield named
+
+
+def _numbers(first: int, last: int, step: int, *, most: int | None) -> range:
     numbers = range(first, last + (1 if step > 0 else -1), step or 1)
-    if not 0 < len(numbers) <= layout.total_bytes:
+    if not numbers or (most is not None and len(numbers) > most):
         raise InputError(f"header numbers {len(numbers)} data files from {first} to {last}; mend it")
-    return [words[0] % number for number in numbers]
+    return numbers
 
 
 def _opened(opened: ExitStack, file: Path, start: int, head: Head, layout: Layout, *, parts: int) -> Source:

@@ -29,6 +29,9 @@ _SPELLING = {
     )
 }  # fmt: skip
 
+#: Lines that are no fields, by names that no field has.
+_LISTED, _STRAY = "a data file of the list", "neither"
+
 #: A header longer than this is none.
 _MOST_BYTES = 1 << 24
 
@@ -63,17 +66,23 @@ def parsed(path: Path) -> Head:
     files: list[str] = []
     with path.open("rb") as file:
         magic = _magic(file)
-        for line in _lines(file):
-            if LIST.fullmatch(fields.get("data file", "")):
-                files.append(line)
-                continue
-            name, colon, value = line.partition(":")
-            if not colon:
-                raise InputError(f"header line is no field: {line[:40]!a}; it is damaged")
-            spelled = _SPELLING.get("".join(name.lower().split()))
-            if spelled and not value.startswith("="):
-                fields[spelled] = _value(magic, spelled, value.strip())
+        for name, text in _fields(file):
+            if name == _STRAY:
+                raise InputError(f"header line is no field: {text[:40]!a}; it is damaged")
+            if name == _LISTED:
+                files.append(text)
+            else:
+                fields[name] = _value(magic, name, text)
         return Head(fields, file.tell(), tuple(files))
+
+
+def data_files_of(path: Path) -> Head:
+    """Only what the head of `path` says about data files, however damaged the rest of it is."""
+    with path.open("rb") as file:
+        file.readline(_MOST_BYTES)
+        found = list(_fields(file))
+    named = {name: text for name, text in found if name == "data file"}
+    return Head(named, 0, tuple(text for name, text in found if name == _LISTED))
 
 
 def _magic(file: IO[bytes]) -> str:
@@ -85,6 +94,22 @@ def _magic(file: IO[bytes]) -> str:
     except nrrd.errors.NRRDError as error:
         raise InputError("is no NRRD file (it begins with none of NRRD0001 to NRRD0005); check its suffix") from error
     return magic
+
+
+def _fields(file: IO[bytes]) -> Iterator[tuple[str, str]]:
+    """The known fields in order, each with its text. Names after "data file: LIST" are _LISTED, other lines _STRAY."""
+    listing = False
+    for line in _lines(file):
+        if listing:
+            yield _LISTED, line
+            continue
+        name, colon, value = line.partition(":")
+        spelled = _SPELLING.get("".join(name.lower().split()))
+        if not colon:
+            yield _STRAY, line
+        elif spelled and not value.startswith("="):
+            yield spelled, value.strip()
+            listing = spelled == "data file" and LIST.fullmatch(value.strip()) is not None
 
 
 def _lines(file: IO[bytes]) -> Iterator[str]:

@@ -68,6 +68,12 @@ def count_raw(path: Path, options: ReadOptions) -> int:
     return _described(path, options).layout.volumes
 
 
+def raw_files(path: Path) -> tuple[Path, ...]:
+    """Its sidecar, where there is one."""
+    sidecar = _sidecar(path)
+    return (sidecar,) if sidecar.is_file() else ()
+
+
 def _described(path: Path, options: ReadOptions) -> _Description:
     told = _with_sidecar(path, options)
     missing = [f"--{key}" for key in ("shape", "dtype") if getattr(told, key) is None]
@@ -109,10 +115,14 @@ def _sample_type(name: str, byte_order: str | None) -> np.dtype[Any]:
     return np.dtype(coded["kind"]).newbyteorder(order)
 
 
+def _sidecar(path: Path) -> Path:
+    bare = path.name[:-3] if path.name.lower().endswith(".gz") else path.name
+    return path.with_name(bare + ".json")
+
+
 def _with_sidecar(path: Path, options: ReadOptions) -> ReadOptions:
     """`options`, filled up with what NAME.raw.json says."""
-    bare = path.name[:-3] if path.name.lower().endswith(".gz") else path.name
-    sidecar = path.with_name(bare + ".json")
+    sidecar = _sidecar(path)
     if not sidecar.is_file():
         return options
     try:

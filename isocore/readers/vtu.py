@@ -39,16 +39,10 @@ def read_vtu(path: Pathlike, options: FieldChoice) -> CellMesh:
         return _joined(name, parts, field)
 
 
-def point_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
-    """The point fields the file offers, without reading their numbers."""
+def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
+    """The fields the file offers, those of points first, without reading their numbers."""
     with reading(path):
-        return tuple(field for field in _open(os.fspath(path)).fields if field.of == "points")
-
-
-def cell_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
-    """The cell fields the file offers; one of them is averaged to the points when it is chosen."""
-    with reading(path):
-        return tuple(field for field in _open(os.fspath(path)).fields if field.of == "cells")
+        return tuple(sorted(_open(os.fspath(path)).fields, key=lambda field: field.of != "points"))
 
 
 def _open(path: str) -> Source:

@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 from scans import ramp, save
 
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError
-from isocore.readers import READERS, SEARCHED, ReadOptions, count_volumes, read, suffix_of
+from isocore.readers import SEARCHED, ReadOptions, count_volumes, read, suffix_of
+from isocore.readers.formats import BY_SUFFIX
 from isocore.volume import Volume
 
-VOLUMES = [suffix for suffix in READERS if suffix != ".vtu"]
+VOLUMES = [suffix for suffix in BY_SUFFIX if suffix != ".vtu"]
 WITH_HEADER = [suffix for suffix in VOLUMES if ".raw" not in suffix]
 
 
@@ -82,13 +83,13 @@ def test_a_last_axis_of_one_is_no_axis(tmp_path: Path, suffix: str) -> None:
     assert isinstance(field, Volume) and field.shape == (4, 5, 6) and count_volumes(path) == 1
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", BY_SUFFIX)
 def test_a_missing_file_is_named(tmp_path: Path, suffix: str) -> None:
     """Before any format is asked."""
     assert "no such file" in str(refusal(tmp_path / f"scan{suffix}"))
 
 
-@pytest.mark.parametrize("suffix", READERS)
+@pytest.mark.parametrize("suffix", BY_SUFFIX)
 def test_an_empty_file_is_refused(tmp_path: Path, suffix: str) -> None:
     """As empty, not as damaged."""
     path = tmp_path / f"scan{suffix}"
@@ -96,7 +97,7 @@ def test_an_empty_file_is_refused(tmp_path: Path, suffix: str) -> None:
     assert "is empty" in str(refusal(path))
 
 
-@pytest.mark.parametrize("suffix", ["", *READERS])
+@pytest.mark.parametrize("suffix", ["", *BY_SUFFIX])
 def test_a_folder_is_refused(tmp_path: Path, suffix: str) -> None:
     """Whatever its name says."""
     path = tmp_path / f"scan{suffix}"

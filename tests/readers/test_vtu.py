@@ -12,7 +12,7 @@ from vtu_files import Encoding, Mesh, every_encoding, write
 
 from isocore.errors import InputError
 from isocore.readers import ReadOptions, read
-from isocore.readers.vtu import cell_fields, point_fields, read_vtu
+from isocore.readers.vtu import read_vtu, vtu_fields
 
 TET = Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(10, [0, 1, 2, 3])])
 
@@ -195,7 +195,7 @@ def test_comments_and_quotes_do_not_confuse_the_scan(tmp_path):
         "<UnstructuredGrid>", "<!-- <Piece> > -->\n<UnstructuredGrid note='a \"> b'>"
     )
     path.write_text(text.replace('Name="f"', 'Name="p &lt; 1"'))
-    assert [field.name for field in point_fields(path)] == ["p < 1"]
+    assert [field.name for field in vtu_fields(path)] == ["p < 1"]
     assert read(path).field_name == "p < 1"
 
 
@@ -204,8 +204,11 @@ def test_the_fields_are_listed_without_reading_them(tmp_path):
     mesh = TET.with_field("f", np.arange(4.0)).with_field("v", np.zeros((4, 3), np.float32))
     path = write(tmp_path / "a.vtu", Mesh(mesh.points, mesh.cells, mesh.point_fields, {"part": np.arange(1)}))
     path.write_bytes(path.read_bytes().replace(b"0.0 1.0", b"oops"))
-    assert [(field.name, field.components) for field in point_fields(path)] == [("f", 1), ("v", 3)]
-    assert [field.name for field in cell_fields(path)] == ["part"]
+    assert [(field.name, field.components, field.of) for field in vtu_fields(path)] == [
+        ("f", 1, "points"),
+        ("v", 3, "points"),
+        ("part", 1, "cells"),
+    ]
 
 
 def test_the_file_is_free_again_when_it_has_been_read(tmp_path):

@@ -14,7 +14,7 @@ import pytest
 
 from isocore.errors import FieldError, OptionError
 from isocore.readers import ReadOptions, read
-from isocore.readers.vtu import cell_fields, point_fields
+from isocore.readers.vtu import vtu_fields
 from isocore.readers.vtu_arrays import ArrayReader
 from isocore.readers.vtu_layout import scan
 
@@ -116,8 +116,7 @@ def test_points_and_fields_are_those_meshio_reads(name):
     ours = arrays_of(MESHES / name)
     points = next(values for key, values in ours.items() if key.startswith("Points/"))
     np.testing.assert_array_equal(points.reshape(-1, 3), theirs.points)
-    assert [field.name for field in point_fields(MESHES / name)] == list(theirs.point_data)
-    assert [field.name for field in cell_fields(MESHES / name)] == list(theirs.cell_data)
+    assert [field.name for field in vtu_fields(MESHES / name)] == [*theirs.point_data, *theirs.cell_data]
     for field, values in theirs.point_data.items():
         np.testing.assert_array_equal(ours[f"PointData/{field}"], values.ravel())
     assert len(ours["Cells/types"]) == sum(len(block.data) for block in theirs.cells)

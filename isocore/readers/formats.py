@@ -1,0 +1,84 @@
+"""The table of formats that are read. To add one: its functions in a file of their own, and a row here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from isocore.cell_mesh import CellMesh
+from isocore.readers.nifti import count_nifti, nifti_files, read_nifti
+from isocore.readers.nrrd import count_nrrd, nrrd_files, read_nrrd
+from isocore.readers.options import ReadOptions
+from isocore.readers.raw import count_raw, raw_files, read_raw
+from isocore.volume import Volume
+
+if TYPE_CHECKING:
+    from isocore.readers.vtu_fields import FieldInfo
+
+Field: TypeAlias = Volume | CellMesh
+
+
+def _one_volume(path: Path, options: ReadOptions) -> int:
+    return 1
+
+
+def _nothing_beside(path: Path) -> tuple[Path, ...]:
+    return ()
+
+
+def _no_choice(path: Path) -> tuple[FieldInfo, ...]:
+    return ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """A file format, as the functions that know it. Their errors need not name the path: the package's functions do.
+
+    suffixes: in lower case; the longest one that a name ends in decides.
+    read: the field in a file.
+    count: how many volumes a file holds, by its header; 1 for a mesh.
+    files: those beside it that belong to it and exist, such as detached samples.
+    fields: what a mesh offers to contour, fields of points before those of cells; () for a volume.
+    unsearched: suffixes a folder is not searched for, because another file leads to those.
+    """
+
+    suffixes: tuple[str, ...]
+    read: Callable[[Path, ReadOptions], Field]
+    count: Callable[[Path, ReadOptions], int] = _one_volume
+    files: Callable[[Path], tuple[Path, ...]] = _nothing_beside
+    fields: Callable[[Path], tuple[FieldInfo, ...]] = _no_choice
+    unsearched: tuple[str, ...] = ()
+
+
+def _read_vtu(path: Path, options: ReadOptions) -> CellMesh:
+    from isocore.readers.vtu import read_vtu  # volumes are read without it
+
+    return read_vtu(path, options)
+
+
+def _vtu_fields(path: Path) -> tuple[FieldInfo, ...]:
+    from isocore.readers.vtu import vtu_fields
+
+    return vtu_fields(path)
+
+
+FORMATS = (
+    Format(
+        suffixes=(".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"),
+        read=read_nifti,
+        count=count_nifti,
+        files=nifti_files,
+        unsearched=(".img", ".img.gz"),
+    ),
+    Format(suffixes=(".nrrd", ".nhdr"), read=read_nrrd, count=count_nrrd, files=nrrd_files),
+    Format(suffixes=(".raw", ".raw.gz"), read=read_raw, count=count_raw, files=raw_files),
+    Format(suffixes=(".vtu",), read=_read_vtu, fields=_vtu_fields),
+)
+
+#: The row of each suffix.
+BY_SUFFIX = {suffix: form for form in FORMATS for suffix in form.suffixes}
+
+#: What a folder is searched for: an .img is found through its .hdr.
+SEARCHED = tuple(suffix for suffix, form in BY_SUFFIX.items() if suffix not in form.unsearched)
