@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import struct
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 _STATUS = Path("/proc/self/status")
@@ -16,9 +13,6 @@ _CGROUP = Path("/sys/fs/cgroup")
 _BASE_BYTES = 60 << 20
 #: Samples, then the surface: of 8-bit noise it can take several times the samples.
 _PER_CONTENT_BYTE = 4
-#: No deflate stream inflates to more than this many times its size, and a scan usually to this many.
-_DEFLATE_LIMIT = 1032
-_USUAL_RATIO = 4
 
 
 def forget_peak() -> None:
@@ -45,23 +39,9 @@ def peak_bytes() -> int | None:
     return peak if sys.platform == "darwin" else peak * 1024
 
 
-def estimated_bytes(files: Iterable[Path]) -> int:
-    """A generous guess at the peak of a job that reads these files, by their sizes alone."""
-    return _BASE_BYTES + _PER_CONTENT_BYTE * sum(_content_bytes(file) for file in files)
-
-
-def _content_bytes(file: Path) -> int:
-    """The size of a file, inflated where it is gzip: its last four bytes say so, modulo 2^32."""
-    try:
-        size = file.stat().st_size
-        if not file.name.lower().endswith(".gz") or size < 18:
-            return size
-        with file.open("rb") as stream:
-            stream.seek(-4, os.SEEK_END)
-            (inflated,) = struct.unpack("<I", stream.read(4))
-    except OSError:
-        return 0
-    return min(int(inflated), size * _DEFLATE_LIMIT) if inflated >= size else size * _USUAL_RATIO
+def estimated_bytes(content_bytes: int) -> int:
+    """A generous guess at the peak of a job whose input is so long when it is unpacked."""
+    return _BASE_BYTES + _PER_CONTENT_BYTE * content_bytes
 
 
 def free_bytes() -> int | None:

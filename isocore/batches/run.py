@@ -12,7 +12,7 @@ from isocore.batches.leftovers import remove_parts
 from isocore.errors import one_line
 from isocore.memory import estimated_bytes
 from isocore.pipeline import STDOUT, Job, Target, convert, failed
-from isocore.readers import files_of
+from isocore.readers import content_bytes
 from isocore.report.record import RunReport
 
 
@@ -68,7 +68,7 @@ def _runs(
 
 def estimate(job: Job) -> int:
     """Bytes that a job may take at its peak."""
-    return estimated_bytes(files_of(job.source))
+    return estimated_bytes(content_bytes(job.source))
 
 
 def guarded(job: Job) -> Iterator[RunReport]:

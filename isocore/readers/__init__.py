@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from isocore.errors import InputError, IsocoreError, reading
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.options import ReadOptions
+from isocore.readers.packed import unpacked_bytes
 
 if TYPE_CHECKING:
     from isocore.readers.vtu_fields import FieldInfo
@@ -52,6 +53,11 @@ def files_of(path: Path) -> tuple[Path, ...]:
         return (path,)
 
 
+def content_bytes(path: Path) -> int:
+    """A guess at the bytes of an input with all that belongs to it, unpacked, by what costs no reading."""
+    return sum(unpacked_bytes(file) for file in files_of(path))
+
+
 def _format(path: os.PathLike[str] | str) -> Format:
     if Path(path).is_dir():
         raise InputError("is a folder, not a file; name the file inside it")
@@ -78,4 +84,13 @@ def _named(path: os.PathLike[str] | str) -> Iterator[None]:
             raise type(error)(f"{name}: {error}") from error
 
 
-__all__ = ["SEARCHED", "ReadOptions", "count_volumes", "files_of", "offered_fields", "read", "suffix_of"]
+__all__ = [
+    "SEARCHED",
+    "ReadOptions",
+    "content_bytes",
+    "count_volumes",
+    "files_of",
+    "offered_fields",
+    "read",
+    "suffix_of",
+]

@@ -20,8 +20,11 @@ Packing = Literal["none", "gzip", "bzip2"]
 
 #: One call of the inflater: small enough to stay in the second-level cache.
 _CHUNK = 1 << 18
-#: No deflate stream inflates to more than this many times its size.
+#: No deflate stream inflates to more than this many times its size, and a scan usually to this many.
 _DEFLATE_LIMIT = 1032
+_USUAL_RATIO = 4
+#: The shortest gzip file: a header of ten bytes, and a checksum and a size of four each.
+_SHORTEST_GZIP = 18
 
 
 def packing_by_suffix(path: Path) -> Packing:
@@ -36,6 +39,23 @@ def packing_of(path: Path) -> Packing:
     if magic[:2] == b"\x1f\x8b":
         return "gzip"
     return "bzip2" if magic == b"BZh" else "none"
+
+
+def unpacked_bytes(path: Path) -> int:
+    """A guess at the bytes of content, without unpacking: of gzip the last four bytes say so, modulo 2^32.
+
+    0 where the file cannot be read; the size of the file where its name does not end in .gz.
+    """
+    try:
+        size = path.stat().st_size
+        if packing_by_suffix(path) == "none" or size < _SHORTEST_GZIP:
+            return size
+        with path.open("rb") as file:
+            file.seek(-4, os.SEEK_END)
+            stated = int.from_bytes(file.read(4), "little")
+    except OSError:
+        return 0
+    return min(stated, size * _DEFLATE_LIMIT) if stated >= size else size * _USUAL_RATIO
 
 
 class Source(Protocol):
@@ -63,7 +83,7 @@ class Packed:
         """subject, advice: how a message about missing bytes begins and ends."""
         self._subject, self._advice = subject, advice
         self._path, self._packing, self._start = path, packing, start
-        self._promised = 0
+        self._promised = self._unpacked = 0
         self._file = path.open("rb", buffering=0)
         self._file.seek(start)
         self._content: Any = _unpacking(self._file, packing)
@@ -78,7 +98,7 @@ class Packed:
     def promise(self, content_bytes: int, *, kept_bytes: int) -> None:
         """Refuse before anything is allocated: content that cannot be there, or that cannot be kept."""
         self._promised = content_bytes
-        file_bytes = self._path.stat().st_size - self._start
+        file_bytes = self._plain_bytes()
         if self._packing == "none" and file_bytes < content_bytes:
             raise self._ends_early(file_bytes)
         if self._packing == "gzip" and content_bytes > file_bytes * _DEFLATE_LIMIT:
@@ -91,7 +111,9 @@ class Packed:
     def read(self, count: int) -> bytes:
         """The next `count` bytes; fewer where the content ends."""
         with self._intact():
-            return bytes(self._content.read(count))
+            content = bytes(self._content.read(count))
+        self._unpacked += len(content)
+        return content
 
     def skip(self, count: int) -> None:
         """Leave out the next `count` bytes."""
@@ -110,8 +132,9 @@ class Packed:
             while filled < len(target):
                 got = self._content.readinto(target[filled : filled + _CHUNK])
                 if not got:
-                    raise EOFError
+                    raise self._ends_early(self._plain_bytes() if self._packing == "none" else self._unpacked)
                 filled += got
+                self._unpacked += got
 
     def finish(self) -> None:
         """Look one byte ahead: at the end of the content this checks the last checksum."""
@@ -121,19 +144,22 @@ class Packed:
     def rest(self) -> int:
         """How many bytes are left; they are read."""
         if self._packing == "none":
-            return self._path.stat().st_size - self._file.tell()
+            return self._start + self._plain_bytes() - self._file.tell()
         return sum(len(chunk) for chunk in iter(lambda: self.read(_CHUNK), b""))
 
     def content_bytes(self) -> int:
-        """How many bytes the whole content has: a second pass where it is packed."""
-        return sum(map(len, self._whole()))
+        """How many bytes the whole content has: where it is packed, a pass of its own through all of it."""
+        return self._plain_bytes() if self._packing == "none" else sum(map(len, self._whole()))
+
+    def _plain_bytes(self) -> int:
+        return self._path.stat().st_size - self._start
 
     @contextmanager
     def _intact(self) -> Iterator[None]:
-        """One message for what inflaters call by many names: content that stops, and content that is damaged."""
+        """One message for what inflaters call by many names: content that is cut, and content that is damaged."""
         try:
             yield
-        except EOFError:
+        except EOFError:  # the inflater keeps to itself what it had unpacked before the cut
             raise self._ends_early(self.content_bytes()) from None
         except (zlib.error, ValueError, OSError, _isal_error()) as error:
             if self._packing == "none":
@@ -161,20 +187,8 @@ class Packed:
                         unpacker = _unpacker(self._packing)
 
 
-class _Plain:
-    """The unpacker of what is not packed."""
-
-    unused_data = b""
-    eof = False
-
-    def decompress(self, data: bytes) -> bytes:
-        return data
-
-
 def _unpacker(packing: Packing) -> Any:
-    if packing == "gzip":
-        return zlib.decompressobj(wbits=31)
-    return bz2.BZ2Decompressor() if packing == "bzip2" else _Plain()
+    return zlib.decompressobj(wbits=31) if packing == "gzip" else bz2.BZ2Decompressor()
 
 
 def _unpacking(file: IO[bytes], packing: Packing) -> Any:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from isocore.batches.plan import find_inputs
-from isocore.readers import files_of, nifti
+from isocore.readers import content_bytes, files_of, nifti
 
 HEAD = ["NRRD0004", "type: uchar", "dimension: 3", "sizes: 2 2 4", "encoding: raw"]
 
@@ -49,6 +49,12 @@ def test_a_detached_header_names_its_data(tmp_path: Path, lines: tuple[str, ...]
 def test_a_damaged_header_names_its_data_too(tmp_path: Path, head: list[str]) -> None:
     """Mending it is a change of the input, and so is mending the data."""
     assert beside(nhdr(tmp_path, "data file: s1.raw", head=["damaged", *head][bool(head) :])) == ["s1.raw"]
+
+
+def test_what_belongs_to_an_input_counts_for_its_memory(tmp_path: Path) -> None:
+    """A header of few bytes stands for all of its samples."""
+    path = nhdr(tmp_path, "data file: s%d.raw 1 2 1")
+    assert content_bytes(path) == path.stat().st_size + 2 * 8
 
 
 def test_a_header_that_numbers_billions_ends_soon(tmp_path: Path) -> None:

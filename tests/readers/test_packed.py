@@ -14,7 +14,7 @@ from scans import patched, ramp, save
 from isocore.errors import InputError, reading
 from isocore.readers import packed, read
 from isocore.readers.joined import Decoded, Joined
-from isocore.readers.packed import Packed, Packing, packing_of
+from isocore.readers.packed import Packed, Packing, packing_of, unpacked_bytes
 from isocore.volume import Volume
 
 CONTENT = bytes(range(256)) * 5000
@@ -68,8 +68,9 @@ def test_missing_bytes_are_counted(tmp_path: Path, packing: Packing) -> None:
         assert 299_000 < held <= 300_000
 
 
-def test_a_complete_but_short_content_is_counted_too(tmp_path: Path) -> None:
-    """The stream ends well, only too soon."""
+def test_a_complete_but_short_content_is_counted_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The stream ends well, only too soon; what was read until then need not be unpacked again."""
+    monkeypatch.delattr(Packed, "content_bytes")
     path = tmp_path / "content"
     path.write_bytes(gzip.compress(CONTENT))
     with pytest.raises(InputError, match=r"ends early \(1,280,000 of 1,280,001 bytes\)"):
@@ -127,6 +128,21 @@ def test_gzip_is_inflated_without_isal_too(tmp_path: Path, monkeypatch: pytest.M
     path.write_bytes(path.read_bytes()[:-300])
     with pytest.raises(InputError, match="ends early"):
         _filled(path, "gzip")
+
+
+def test_the_size_of_the_content_is_guessed_without_unpacking(tmp_path: Path) -> None:
+    """By the end of a gzip file; where it cannot be true, by what scans usually are, and never beyond what gzip can."""
+    path = tmp_path / "content.gz"
+    path.write_bytes(gzip.compress(CONTENT))
+    assert unpacked_bytes(path) == len(CONTENT)
+    packed_bytes = path.stat().st_size
+    for stated, guessed in ((0, 4 * packed_bytes), (2**32 - 1, 1032 * packed_bytes)):
+        patched(path, packed_bytes - 4, stated.to_bytes(4, "little"))
+        assert unpacked_bytes(path) == guessed
+    path.write_bytes(bytes(17))
+    assert unpacked_bytes(path) == 17 and unpacked_bytes(tmp_path / "gone.gz") == 0
+    (tmp_path / "content").write_bytes(gzip.compress(CONTENT))
+    assert unpacked_bytes(tmp_path / "content") == packed_bytes
 
 
 def test_gzip_cannot_hold_what_it_cannot_hold(tmp_path: Path) -> None:
