@@ -3,50 +3,65 @@
 from __future__ import annotations
 
 import re
-from html import escape
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from isocore.report.record import BatchReport, RunReport
 
 #: Characters that XML 1.0 cannot hold, not even escaped.
 _UNSPEAKABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+#: Inside of a tag: what ElementTree writes, and what this report has held since its first version.
+_SPELLINGS = (
+    ("<system-err />", "<system-err></system-err>"),
+    (" />", "/>"),
+    ("'", "&#x27;"),
+    ("&#09;", "\t"),
+    ("&#13;", "\r"),
+)
 
 
 def render_junit(batch: BatchReport) -> str:
     """One suite; seconds are those of each output."""
     runs = batch.outputs
-    counts = {
-        "tests": len(runs),
-        "failures": sum(bool(run.missed) and run.status != "failed" for run in runs),
-        "errors": sum(run.status == "failed" for run in runs),
-        "skipped": sum(run.status == "skipped" and not run.missed for run in runs),
-        "time": f"{batch.seconds:.3f}",
+    totals = {
+        "tests": str(len(runs)),
+        "failures": str(sum(bool(run.missed) and run.status != "failed" for run in runs)),
+        "errors": str(sum(run.status == "failed" for run in runs)),
     }
-    attributes = "".join(f" {key}={_quoted(str(value))}" for key, value in counts.items())
-    totals = "".join(f" {key}={_quoted(str(value))}" for key, value in counts.items() if key != "skipped")
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>', f'<testsuites name="isocore"{totals}>']
-    lines += [f'  <testsuite name="isocore convert"{attributes}>', *map(_case, runs), "  </testsuite>", "</testsuites>"]
-    return "\n".join(lines) + "\n"
+    skipped = {"skipped": str(sum(run.status == "skipped" and not run.missed for run in runs))}
+    time = {"time": f"{batch.seconds:.3f}"}
+    suites = Element("testsuites", {"name": "isocore"} | totals | time)
+    suite = SubElement(suites, "testsuite", {"name": "isocore convert"} | totals | skipped | time)
+    suite.text = "\n  "
+    cases = [SubElement(suite, "testcase", _names(run)) for run in runs]
+    indent(suites)
+    for case, run in zip(cases, runs, strict=True):
+        _tell(case, run)
+    text = re.sub("<[^>]*>", _respelled, tostring(suites, encoding="unicode"))
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 
-def _case(run: RunReport) -> str:
+def _names(run: RunReport) -> dict[str, str]:
     seconds = run.seconds.get("total", 0.0) if run.status != "skipped" else 0.0
-    name = f"name={_quoted(run.output)} classname={_quoted(run.source)} time={_quoted(f'{seconds:.3f}')}"
-    inside = []
+    return {"name": _clean(run.output), "classname": _clean(run.source), "time": f"{seconds:.3f}"}
+
+
+def _tell(case: Element, run: RunReport) -> None:
+    """What came of the run, on the line of its case."""
     if run.status == "failed":
-        inside.append(f'<error type="failed" message={_quoted(run.message)}/>')
+        SubElement(case, "error", type="failed", message=_clean(run.message))
     elif run.missed:
-        inside.append(f'<failure type="missed" message={_quoted("; ".join(run.missed))}/>')
+        SubElement(case, "failure", type="missed", message=_clean("; ".join(run.missed)))
     elif run.status == "skipped":
-        inside.append(f"<skipped message={_quoted(run.message)}/>")
+        SubElement(case, "skipped", message=_clean(run.message))
     if run.warnings:
-        inside.append(f"<system-err>{escape(_clean(chr(10).join(run.warnings)), quote=False)}</system-err>")
-    if not inside:
-        return f"    <testcase {name}/>"
-    return f"    <testcase {name}>" + "".join(inside) + "</testcase>"
+        SubElement(case, "system-err").text = _clean("\n".join(run.warnings))
 
 
-def _quoted(text: str) -> str:
-    return '"' + escape(_clean(text)).replace("\n", "&#10;") + '"'
+def _respelled(tag: re.Match[str]) -> str:
+    text = tag[0]
+    for theirs, ours in _SPELLINGS:
+        text = text.replace(theirs, ours)
+    return text
 
 
 def _clean(text: str) -> str:
