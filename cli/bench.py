@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .console import plain_table
 from .options import PATH, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
@@ -118,17 +119,9 @@ def _record(table: Table) -> dict[str, Any]:
 
 def _text(table: Table) -> str:
     """Columns under their headings, numbers to the right."""
-    rows = [table.columns, *([_cell(entry) for entry in row] for row in table.rows)]
-    widths = [max(len(row[n]) for row in rows) for n in range(len(table.columns))]
-    numeric = [not isinstance(entry, str) for entry in table.rows[0]]
-    lines = [
-        "  ".join(
-            entry.rjust(width) if right else entry.ljust(width)
-            for entry, width, right in zip(row, widths, numeric, strict=True)
-        ).rstrip()
-        for row in rows
-    ]
-    return "\n".join([table.title, *lines])
+    rows = [tuple(map(_cell, row)) for row in table.rows]
+    numeric = (column for column, entry in zip(table.columns, table.rows[0], strict=True) if not isinstance(entry, str))
+    return f"{table.title}\n{plain_table(table.columns, rows, frozenset(numeric))}"
 
 
 def _cell(entry: str | int | float) -> str:

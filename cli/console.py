@@ -116,7 +116,7 @@ def say_table(batch: BatchReport) -> None:
 
 
 def plain_table(headings: tuple[str, ...], rows: list[tuple[str, ...]], right: frozenset[str]) -> str:
-    """Columns set apart by two spaces."""
+    """Columns set apart by two spaces. right: the headings of those that end in line."""
     widths = [max(len(line[column]) for line in (headings, *rows)) for column in range(len(headings))]
 
     def line(cells: tuple[str, ...]) -> str:
