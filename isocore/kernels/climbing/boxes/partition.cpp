@@ -14,8 +14,8 @@
 #include "climbing/boxes/flatness.hpp"
 #include "climbing/boxes/survey.hpp"
 #include "climbing/crossings/cloud.hpp"
-#include "climbing/crossings/cuts.hpp"
 #include "climbing/crossings/ligns.hpp"
+#include "climbing/crossings/rice_edges.hpp"
 #include "climbing/crossings/rim.hpp"
 #include "common/parallel.hpp"
 #include "tables/rims.hpp"
@@ -42,7 +42,7 @@ class Partition {
         survey_.take(block_, !gatherer_);
         if (bar.blocks++ == 0) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
-        cuts_.clear();
+        edges_.clear();
         boxes_.clear();
         cells_ = {};
         if (gatherer_) {
@@ -52,15 +52,15 @@ class Partition {
         const int found = price(kWhole, crossings_);
         bar.halvings.add_block(fate(found));
         settle(kWhole, found, crossings_, bar.halvings);
-        for (const HighRice& box : boxes_) cuts_.add(box);
+        for (const HighRice& box : boxes_) edges_.add(box);
         bar.highrices += boxes_.size();
         for (int n = 0; n < N * N; ++n) {
             const std::uint32_t cells = cells_[static_cast<std::size_t>(n)];
             if (cells == 0) continue;
-            cuts_.add_cells(n % N, n / N, cells);
+            edges_.add_cells(n % N, n / N, cells);
             bar.highrices += static_cast<std::size_t>(std::popcount(cells));
         }
-        cuts_.keep(site_, layout_);
+        edges_.keep(site_, layout_);
     }
 
   private:
@@ -122,7 +122,7 @@ class Partition {
         const HighRice rice = high_rice(box);
         const unsigned corners = site_.corners(rice);
         const Rim& rim = kRims[corners];
-        const Ends ends = ends_of(rice);
+        const EndsByAxis ends = ends_of(rice);
         // Always four or six, which is cheaper than to guess how many.
         Flatness::Ring ring;
         const std::size_t size = rim.length > 4 ? 6 : 4;
@@ -132,7 +132,7 @@ class Partition {
     }
 
     // Where the one crossing on an edge of a simple box is along its axis.
-    float along_edge(const Ends& ends, const Side& side) const {
+    float along_edge(const EndsByAxis& ends, const Side& side) const {
         constexpr std::size_t kSamples = N + 1;
         const std::size_t lign = Ligns::lign(kSamples, side.axis, ends[side.ends[0]], ends[side.ends[1]]);
         const int along = std::countr_zero(ligns_.crossed[lign] & ~std::uint64_t{0} << ends[2u * side.axis]);
@@ -276,7 +276,7 @@ class Partition {
     Block<N> block_;
     Survey<N> survey_;
     Site site_;
-    Cuts<N> cuts_;
+    RiceEdges<N> edges_;
     std::vector<HighRice> boxes_;             // highrices of several cells
     std::array<std::uint32_t, N * N> cells_;  // those of one: [k][j], bit i
     Ligns ligns_;

@@ -1,6 +1,7 @@
 #include "climbing/crossings/gatherer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -16,19 +17,21 @@ Gatherer::Gatherer(const SampleReader& samples, const Options& options) : sample
     for (std::size_t a = 0; a < 3; ++a) scale[a] = static_cast<float>(stretch[a] / unit);
 }
 
+// Rows with crossed edges are collected until there are enough; then all their bits are visited in one loop, and all
+// their crossings found together. Loops row by row would be short, and their ends mispredicted.
 void Gatherer::gather(const Site& site, Clouds& clouds, Ligns& ligns) const {
-    struct Row {
+    struct TaggedRow {  // whose bits a word of crossed edges is
         Edge start;
-        Ligns::Row ligns;
+        LignRow ligns;
     };
     constexpr std::size_t kRowsAtOnce = 24, kRoom = 33 * kRowsAtOnce;
-    SetBits<Row, kRowsAtOnce> found;
+    SetBits<TaggedRow, kRowsAtOnce> rows;
     Spotter<kRoom> spotter(samples_);
     ligns.clear();
-    std::array<std::uint32_t, kRoom> edges;
-    const auto add = [&] {
+    std::array<std::uint32_t, kRoom> edges;  // of `ligns`, in the order in which the spotter has them
+    const auto add_rows = [&] {
         std::size_t size = 0;
-        found.visit([&](const Row& row, int i) {
+        rows.visit([&](const TaggedRow& row, int i) {
             spotter.add(row.start.further_along_x(i));
             edges[size++] = static_cast<std::uint32_t>(ligns.cross(row.ligns, i));
         });
@@ -41,10 +44,10 @@ void Gatherer::gather(const Site& site, Clouds& clouds, Ligns& ligns) const {
     };
     for (const Edge& start : site.crossed_rows()) {
         const int j = start.at(1), k = start.at(2);
-        found.add(site.row(j, k).crossed[start.axis()], {start, Ligns::row(site.samples(), start.axis(), j, k)});
-        if (found.full()) add();
+        rows.add(site.row(j, k).crossed[start.axis()], {start, Ligns::row(site.samples(), start.axis(), j, k)});
+        if (rows.full()) add_rows();
     }
-    add();
+    add_rows();
 }
 
 }  // namespace isocore::climbing

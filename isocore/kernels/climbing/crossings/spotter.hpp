@@ -1,4 +1,5 @@
-// spotter.hpp - Finds where grid edges of a block are crossed, as many at once as there are lanes.
+// spotter.hpp - Finds where grid edges of a block are crossed: edges are collected first, then crossings are computed
+// as many at once as a vector register has lanes.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 
 namespace isocore::climbing {
 
+// Takes up to `room` edges.
 template <std::size_t room>
 class Spotter {
   public:
@@ -22,16 +24,17 @@ class Spotter {
 
     bool full() const { return size_ == room; }
 
-    // Adds a crossed edge, to be seen from the sample `from`.
+    // Adds a crossed edge; its place will be relative to the sample `from`.
     void add(const Edge& edge, const std::array<std::uint8_t, 3>& from = {}) {
         edges_[size_] = edge;
         for (std::size_t a = 0; a < 3; ++a) starts_[a][size_] = static_cast<float>(edge.at(a) - from[a]);
         axes_[size_++] = static_cast<float>(edge.axis());
     }
 
-    // Calls visit(places, shares, first, count) for all that were added, which belong to the block at `origin`, in
-    // their order, `count` lanes at a time, and forgets them. Places are multiplied by `scale`; a share is how far
-    // along its edge a crossing is, from 0 to 1.
+    // Finds the crossings of all edges that were added, which belong to the block at `origin`, and forgets the edges.
+    // Calls visit(places, shares, first, count) for the `count` edges from the one that was added as number `first` on,
+    // one lane each. shares: where each is crossed, t in [0, 1] along its edge. places: the crossings, relative to
+    // `from`, times `scale`.
     template <class Visit>
     void visit(const Dims& origin, const Spot& scale, const Visit& visit) {
         samples_.quotients(origin, {edges_.data(), size_}, parts_.data(), wholes_.data());
@@ -51,13 +54,13 @@ class Spotter {
     }
 
   private:
-    using Row = std::array<float, room + kLanes<float>>;
+    using NumberPerEdge = std::array<float, room + kLanes<float>>;  // the last register may reach past the last edge
 
     const SampleReader& samples_;
     std::size_t size_ = 0;
     std::array<Edge, room> edges_;
-    Vector<Row> starts_;
-    Row axes_, parts_, wholes_;
+    Vector<NumberPerEdge> starts_;
+    NumberPerEdge axes_, parts_, wholes_;
 };
 
 }  // namespace isocore::climbing
