@@ -7,109 +7,137 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
-#include <utility>
+#include <optional>
 
 #include "climbing/boxes/bar_shadow.hpp"
 #include "climbing/boxes/block.hpp"
-#include "climbing/boxes/flatness.hpp"
+#include "climbing/boxes/dyadic_box.hpp"
+#include "climbing/boxes/flat_boxes.hpp"
 #include "climbing/boxes/survey.hpp"
-#include "climbing/crossings/cloud.hpp"
-#include "climbing/crossings/ligns.hpp"
 #include "climbing/crossings/rice_edges.hpp"
-#include "climbing/crossings/rim.hpp"
+#include "climbing/crossings/site.hpp"
 #include "common/parallel.hpp"
-#include "tables/rims.hpp"
 
 namespace isocore::climbing {
 namespace {
 
+// Partitions the blocks of a bar, one after the other. The price of a box is that of survey.hpp; with an error bound it
+// is kSplit also for boxes that are not flat enough.
 template <int N>
 class Partition {
   public:
+    // Without a gatherer every box is flat enough.
     Partition(const SignGrid& signs, Layout& layout, const Gatherer* gatherer)
-        : signs_(signs),
-          layout_(layout),
-          gatherer_(gatherer),
-          flat_(gatherer ? gatherer->max_error : 0),
-          site_(N),
-          ligns_(N + 1),
-          clouds_(N) {}
+        : signs_(signs), layout_(layout), site_(N) {
+        if (!gatherer) return;
+        scale_ = gatherer->scale;
+        flat_.emplace(*gatherer);
+    }
 
     // Adds a block to its bar. A bar's blocks come in their order; those whose samples lie on one side are left out.
     void climb(const Dims& origin, BarBoxes& bar) {
         block_.load(signs_, origin);
-        measure_dikes();
-        survey_.take(block_, !gatherer_);
+        places_.measure(block_.cells, scale_);
+        survey_.take(block_, !flat_);
         if (bar.blocks++ == 0) site_.begin(signs_, layout_, origin[1], origin[2]);
         site_.load(origin[0]);
-        edges_.clear();
         boxes_.clear();
         cells_ = {};
-        if (gatherer_) {
-            for (auto* table : {&asked_, &passed_}) *table = {};
-            gather();
-        }
-        const int found = price(kWhole, crossings_);
-        bar.halvings.add_block(fate(found));
-        settle(kWhole, found, crossings_, bar.halvings);
-        for (const HighRice& box : boxes_) edges_.add(box);
+        const Cloud crossings = flat_ ? flat_->begin(site_) : Cloud{};
+        const int whole = price(Box::whole(), crossings);
+        bar.halvings.add_block(fate(whole));
+        settle(Box::whole(), whole, crossings, bar.halvings);
         bar.highrices += boxes_.size();
-        for (int n = 0; n < N * N; ++n) {
-            const std::uint32_t cells = cells_[static_cast<std::size_t>(n)];
-            if (cells == 0) continue;
-            edges_.add_cells(n % N, n / N, cells);
-            bar.highrices += static_cast<std::size_t>(std::popcount(cells));
-        }
+        for (const std::uint32_t cells : cells_) bar.highrices += static_cast<std::size_t>(std::popcount(cells));
+        edges_.clear();
+        edges_.add(boxes_);
+        edges_.add_cells(cells_);
         edges_.keep(site_, layout_);
     }
 
   private:
     using Dikes = Dike<N>;
-    using Word = typename DikeBits<N>::Word;
-    using Box = std::array<Label, 3>;
-    static constexpr Box kWhole{1, 1, 1};
-    using Table = std::array<std::array<Word, 2 * N>, 2 * N>;  // by labels: [y][z], bit of x
-    // Cells in a box from which on looking further pays; never where a judge has to look at all crossings.
-    static constexpr int kWorthALook = 32;
-    static constexpr std::size_t kWorthFiltering = 16;  // crossings around a box
-
+    using Box = DyadicBox<N>;
     static constexpr int kAccepted = Survey<N>::kAccepted, kSplit = Survey<N>::kSplit;
 
-    void gather() {
-        std::size_t crossings = 0;
-        for (const Edge& start : site_.crossed_rows())
-            crossings +=
-                static_cast<std::size_t>(std::popcount(site_.row(start.at(1), start.at(2)).crossed[start.axis()]));
-        clouds_.begin(crossings);
-        gatherer_->gather(site_, clouds_, ligns_);
-        crossings_ = clouds_.finish();
+    static Fate fate(int price) {
+        return price == kSplit ? Fate::halved : price == kAccepted ? Fate::highrice : Fate::nothing;
     }
 
-    // around: the crossings of the box, and perhaps others.
+    // The cloud `around` holds the crossings of the box, and may hold others.
     int price(const Box& box, const Cloud& around) {
-        const int price = survey_price(box);
-        return price == kAccepted && gatherer_ ? judged_price(box, around) : price;
+        const auto [x, y, z] = box.dikes;
+        const int price = survey_.price(y, z, DikeBits<N>::bit(x));
+        return price == kAccepted && flat_ ? price_if_flat(box, around) : price;
     }
 
-    // Of a box that may be a highrice otherwise.
-    int judged_price(const Box& box, const Cloud& around) {
-        if (is_cell(box)) return kAccepted;
-        // A box is met on many ways down, so what is found out is kept.
-        const auto [x, y, z] = box;
-        const Word bit = Word{1} << DikeBits<N>::bit(x);
-        if (!(asked_[y][z] & bit)) {
-            asked_[y][z] |= bit;
-            if (is_flat(box, around)) passed_[y][z] |= bit;
+    // The price of a box that the survey accepts.
+    int price_if_flat(const Box& box, const Cloud& around) {
+        return box.is_cell() || flat_->passes(site_, places_, box, around) ? kAccepted : kSplit;
+    }
+
+    // Does with a box what its price says: notes it as a highrice, or halves it and settles its halves.
+    void settle(const Box& box, int price, const Cloud& around, Halvings& halvings) {
+        if (price == kSplit) {
+            if (flat_)
+                flat_->with_cloud_of(places_, box, around, [&](const Cloud& here) { split(box, here, halvings); });
+            else
+                split(box, around, halvings);
+        } else if (price == kAccepted) {
+            const auto [x, y, z] = box.dikes;
+            if (box.is_cell())
+                cells_[y - N + N * (z - N)] |= std::uint32_t{1} << (x - N);
+            else
+                boxes_.push_back(places_.high_rice(box));
         }
-        return passed_[y][z] & bit ? kAccepted : kSplit;
     }
 
-    int survey_price(const Box& box) const { return survey_.price(box[1], box[2], DikeBits<N>::bit(box[0])); }
+    void split(const Box& box, const Cloud& around, Halvings& halvings) {
+        const Choice choice = best_axis(box, around);
+        const auto parts = box.halves(choice.axis);
+        if (!parts[0].is_cell())
+            halvings.add(box.axes(),
+                         {static_cast<std::uint8_t>(choice.axis), fate(choice.prices[0]), fate(choice.prices[1])});
+        for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.prices[n], around, halvings);
+    }
 
-    // The prices of the halves along each axis; of the box itself twice where it is one cell thick.
-    using Prices = std::array<std::array<int, 2>, 3>;
-    Prices survey_halves(const Box& box) const {
-        const auto [x, y, z] = box;
+    // An axis and the prices of the halves along it.
+    struct Choice {
+        std::size_t axis;
+        std::array<int, 2> prices;
+    };
+
+    // The axis whose halves have the least price together, looking one halving further where they must be split; of
+    // several axes that along which the box is longest.
+    Choice best_axis(const Box& box, const Cloud& around) {
+        auto prices = survey_halves(box);
+        std::array<int, 3> keys;
+        for (std::size_t axis = 0; axis < 3; ++axis) keys[axis] = key(box, axis, prices[axis][0] + prices[axis][1]);
+        if (!flat_) {
+            if (box.cells() >= kWorthALook) {
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    if (box.can_be_halved(axis))
+                        keys[axis] = key(box, axis, price_further(box.halves(axis), prices[axis]));
+                }
+            }
+            return {axis_of_least(keys), prices[axis_of_least(keys)]};
+        }
+        // The error bound can only raise prices, so no half need be tested until its axis is the best.
+        for (std::array<std::size_t, 3> tested{};;) {
+            const std::size_t axis = axis_of_least(keys);
+            if (tested[axis] == 2) return {axis, prices[axis]};
+            const std::size_t n = tested[axis]++;
+            if (prices[axis][n] != kAccepted) continue;
+            prices[axis][n] = price_if_flat(box.halves(axis)[n], around);
+            keys[axis] = key(box, axis, prices[axis][0] + prices[axis][1]);
+        }
+    }
+
+    // By the survey, the prices of the lower and the upper half along each axis. Along an axis of one cell both are the
+    // price of the box itself: so all axes are looked up alike, without a branch.
+    std::array<std::array<int, 2>, 3> survey_halves(const Box& box) const {
+        const auto [x, y, z] = box.dikes;
+        // Label k becomes 2 k or 2 k + 1; that of a unit dike is shifted by 0 and stays.
         const auto lower = [](Label label) { return label << !Dikes::is_unit(label); };
         const auto upper = [](Label label) { return label << !Dikes::is_unit(label) | Label{!Dikes::is_unit(label)}; };
         const int bit = DikeBits<N>::bit(x);
@@ -118,171 +146,47 @@ class Partition {
                  {survey_.price(y, lower(z), bit), survey_.price(y, upper(z), bit)}}};
     }
 
-    bool is_flat(const Box& box, const Cloud& around) const {
-        const HighRice rice = high_rice(box);
-        const unsigned corners = site_.corners(rice);
-        const Rim& rim = kRims[corners];
-        const EndsByAxis ends = ends_of(rice);
-        // Always four or six, which is cheaper than to guess how many.
-        Flatness::Ring ring;
-        const std::size_t size = rim.length > 4 ? 6 : 4;
-        for (std::size_t n = 0; n < size; ++n) ring[n] = along_edge(ends, kSides[rim.edges[n]]);
-        std::fill(ring.begin() + size, ring.end(), ring[0]);
-        return flat_(around, extent(box), corners, ring);
-    }
-
-    // Where the one crossing on an edge of a simple box is along its axis.
-    float along_edge(const EndsByAxis& ends, const Side& side) const {
-        constexpr std::size_t kSamples = N + 1;
-        const std::size_t lign = Ligns::lign(kSamples, side.axis, ends[side.ends[0]], ends[side.ends[1]]);
-        const int along = std::countr_zero(ligns_.crossed[lign] & ~std::uint64_t{0} << ends[2u * side.axis]);
-        return (static_cast<float>(along) + ligns_.shares[Ligns::edge(kSamples, lign, along)]) *
-               gatherer_->scale[side.axis];
-    }
-
-    void settle(const Box& box, int found, const Cloud& around, Halvings& halvings) {
-        if (found == kSplit) {
-            split(box, around, halvings);
-        } else if (found == kAccepted) {
-            if (is_cell(box))
-                cells_[box[1] - N + N * (box[2] - N)] |= std::uint32_t{1} << (box[0] - N);
-            else
-                boxes_.push_back(high_rice(box));
-        }
-    }
-
-    void split(const Box& box, const Cloud& around, Halvings& halvings) {
-        const std::size_t top = clouds_.top();
-        const Cloud here =
-            gatherer_ && box != kWhole && around.size > kWorthFiltering ? clouds_.push(around, extent(box)) : around;
-        const Choice choice = best_axis(box, here);
-        const auto parts = halves(box, choice.axis);
-        if (!is_cell(parts[0]))
-            halvings.add(axes(box),
-                         {static_cast<std::uint8_t>(choice.axis), fate(choice.found[0]), fate(choice.found[1])});
-        for (std::size_t n = 0; n < parts.size(); ++n) settle(parts[n], choice.found[n], here, halvings);
-        clouds_.pop(top);
-    }
-
-    static Fate fate(int found) {
-        return found == kSplit ? Fate::halved : found == kAccepted ? Fate::highrice : Fate::nothing;
-    }
-    static bool is_cell(const Box& box) { return Dikes::is_unit(std::min({box[0], box[1], box[2]})); }
-    // Those along which a box can be halved, a bit each.
-    static unsigned axes(const Box& box) {
-        const auto bit = [&](unsigned axis) { return unsigned{!Dikes::is_unit(box[axis])} << axis; };
-        return bit(0) | bit(1) | bit(2);
-    }
-    static std::array<Box, 2> halves(const Box& box, std::size_t axis) {
-        std::array<Box, 2> out{box, box};
-        out[0][axis] = 2 * box[axis];
-        out[1][axis] = 2 * box[axis] + 1;
-        return out;
-    }
-
-    // An axis and what becomes of the halves along it.
-    struct Choice {
-        std::size_t axis;
-        std::array<int, 2> found;
-    };
-
-    // The axis whose halves come off best, looking one halving further where they must be split again; the longest of
-    // several.
-    Choice best_axis(const Box& box, const Cloud& around) {
-        Prices prices = survey_halves(box);
-        std::array<int, 3> ranks;  // least is best
-        for (std::size_t axis = 0; axis < 3; ++axis) ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
-        const auto best = [&] {
-            return static_cast<std::size_t>(std::min(std::min(ranks[0], ranks[1]), ranks[2]) & 3);
-        };
-        if (!gatherer_) {
-            if (Dikes::length(box[0]) * Dikes::length(box[1]) * Dikes::length(box[2]) >= kWorthALook) {
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    if (!Dikes::is_unit(box[axis]))
-                        ranks[axis] = rank(box, axis, price_further(halves(box, axis), prices[axis]));
-                }
-            }
-            return {best(), prices[best()]};
-        }
-        // A gatherer can only raise prices, so no half need be brought before it until its axis is the best.
-        for (std::array<std::size_t, 3> judged{};;) {
-            const std::size_t axis = best();
-            if (judged[axis] == 2) return {axis, prices[axis]};
-            const std::size_t n = judged[axis]++;
-            if (prices[axis][n] != kAccepted) continue;
-            prices[axis][n] = judged_price(halves(box, axis)[n], around);
-            ranks[axis] = rank(box, axis, prices[axis][0] + prices[axis][1]);
-        }
-    }
-
+    // The price of both halves, where a half that must be split has the least price of its own halves.
     int price_further(const std::array<Box, 2>& parts, const std::array<int, 2>& prices) const {
         int sum = 0;
         for (std::size_t n = 0; n < parts.size(); ++n) {
-            const auto& [x, y, z] = parts[n];
+            const auto& [x, y, z] = parts[n].dikes;
             sum += prices[n] == kSplit ? survey_.price_of_halves(y, z, DikeBits<N>::bit(x)) : prices[n];
         }
         return sum;
     }
+    // Cells in a box from which on looking further pays; with an error bound it never does, as all those halves would
+    // have to be tested.
+    static constexpr int kWorthALook = 32;
 
-    static constexpr int kMoreThanAnyLength = 64, kMoreThanAnyCost = 1 << 10;
-    // Of dikes: long ones come first, and those that cannot be halved last.
-    static constexpr std::array<int, 2 * N> kRanks = [] {
-        std::array<int, 2 * N> ranks{};
+    // What makes one axis better than another, as one number of which the least is best: that the box can be halved
+    // along it, then the price of the halves, then the length of the box, then the axis itself, in the lowest two bits.
+    static int key(const Box& box, std::size_t axis, int price) {
+        return kDikeKeys[box.dikes[axis]] + 4 * kMoreThanAnyLength * price + static_cast<int>(axis);
+    }
+    static std::size_t axis_of_least(const std::array<int, 3>& keys) {
+        return static_cast<std::size_t>(std::min(std::min(keys[0], keys[1]), keys[2]) & 3);
+    }
+    static constexpr int kMoreThanAnyLength = 64, kMoreThanAnyPrice = 1 << 10;
+    static constexpr std::array<int, 2 * N> kDikeKeys = [] {
+        std::array<int, 2 * N> keys{};
         for (Label label = 1; label < 2 * N; ++label)
-            ranks[label] =
-                4 * ((Dikes::is_unit(label) ? kMoreThanAnyLength * kMoreThanAnyCost : 0) - Dikes::length(label));
-        return ranks;
+            keys[label] =
+                4 * ((Dikes::is_unit(label) ? kMoreThanAnyLength * kMoreThanAnyPrice : 0) - Dikes::length(label));
+        return keys;
     }();
-    static int rank(const Box& box, std::size_t axis, int cost) {
-        return kRanks[box[axis]] + 4 * kMoreThanAnyLength * cost + static_cast<int>(axis);
-    }
-
-    // Where dikes lie, as far as they do in the volume; the same for most blocks.
-    void measure_dikes() {
-        for (std::size_t a = 0; a < 3; ++a) {
-            if (measured_[a] == block_.cells[a]) continue;
-            measured_[a] = block_.cells[a];
-            const float scale = gatherer_ ? gatherer_->scale[a] : 1;
-            for (Label label = 1; label < 2 * N; ++label) {
-                const int low = Dikes::start(label), high = std::min(Dikes::end(label), measured_[a]);
-                dikes_[a][label] = {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high),
-                                    static_cast<float>(low) * scale, static_cast<float>(high) * scale};
-            }
-        }
-    }
-
-    Extent extent(const Box& box) const {
-        const Segment &x = dikes_[0][box[0]], &y = dikes_[1][box[1]], &z = dikes_[2][box[2]];
-        return {{x.from, y.from, z.from}, {x.to, y.to, z.to}};
-    }
-
-    HighRice high_rice(const Box& box) const {
-        const Segment &x = dikes_[0][box[0]], &y = dikes_[1][box[1]], &z = dikes_[2][box[2]];
-        return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
-    }
-
-    // A dike in samples from the block's origin, and in the unit of the bound.
-    struct Segment {
-        std::uint8_t low, high;
-        float from, to;
-    };
 
     const SignGrid& signs_;
     Layout& layout_;
-    const Gatherer* gatherer_;
-    Flatness flat_;
-    std::array<int, 3> measured_{};  // cells along each axis
-    std::array<std::array<Segment, 2 * N>, 3> dikes_;
+    Spot scale_{1, 1, 1};  // from samples to the unit of the error bound
+    DikePlaces<N> places_;
     Block<N> block_;
     Survey<N> survey_;
     Site site_;
     RiceEdges<N> edges_;
-    std::vector<HighRice> boxes_;             // highrices of several cells
+    std::vector<HighRice> boxes_;             // the block's highrices of several cells
     std::array<std::uint32_t, N * N> cells_;  // those of one: [k][j], bit i
-    Ligns ligns_;
-    Clouds clouds_;
-    Cloud crossings_;       // of the whole block
-    Table asked_, passed_;  // boxes by labels: judged, and found flat
+    std::optional<FlatBoxes<N>> flat_;        // last, as it is large and seldom all used
 };
 
 template <int N>

@@ -1,9 +1,11 @@
 #include "climbing/crossings/rice_edges.hpp"
 
+#include "common/inlined.hpp"
+
 namespace isocore::climbing {
 
 template <int N>
-void RiceEdges<N>::add(const HighRice& box) {
+ISOCORE_INLINED void RiceEdges<N>::add(const HighRice& box) {
     const int x0 = box.low[0], x1 = box.high[0], y0 = box.low[1], y1 = box.high[1], z0 = box.low[2], z1 = box.high[2];
     const std::uint64_t along = (std::uint64_t{1} << x1) - (std::uint64_t{1} << x0),
                         ends = std::uint64_t{1} << x0 | std::uint64_t{1} << x1;
@@ -17,12 +19,26 @@ void RiceEdges<N>::add(const HighRice& box) {
 }
 
 template <int N>
-void RiceEdges<N>::add_cells(int j, int k, std::uint64_t cells) {
+ISOCORE_INLINED void RiceEdges<N>::add_cells(int j, int k, std::uint64_t cells) {
     const std::uint64_t ends = cells | cells << 1;
     for (const int up : {0, 1}) {
         for (const int right : {0, 1}) at(j + right, k + up)[0] |= cells;
         at(j, k + up)[1] |= ends;
         at(j + up, k)[2] |= ends;
+    }
+}
+
+template <int N>
+void RiceEdges<N>::add(std::span<const HighRice> boxes) {
+    for (const HighRice& box : boxes) add(box);
+}
+
+template <int N>
+void RiceEdges<N>::add_cells(const std::array<std::uint32_t, N * N>& cells) {
+    for (int k = 0; k < N; ++k) {
+        for (int j = 0; j < N; ++j) {
+            if (const std::uint32_t here = cells[static_cast<std::size_t>(j + N * k)]) add_cells(j, k, here);
+        }
     }
 }
 
