@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "common/inlined.hpp"
 #include "tables/rims.hpp"
 
 namespace isocore::climbing {
@@ -120,21 +121,11 @@ bool fit(const Cloud& around, const Extent& box, const Spot& origin, Spot& norma
 
 }  // namespace
 
-bool Flatness::operator()(const Cloud& around, const Extent& box, unsigned signs, const Ring& ring) const {
-    const auto corners = places(box, kRimLanes[signs], ring);
-    const Vector<Numbers> next{corners[0].rotated(), corners[1].rotated(), corners[2].rotated()};
-    const Spot first{corners[0].first(), corners[1].first(), corners[2].first()};
-    const auto normals = cross(minus(corners, {first[0], first[1], first[2]}), minus(next, corners));
-    Spot normal{normals[0].sum(), normals[1].sum(), normals[2].sum()};
-    return normalise(normal) && in_slab(around, box, corners, first, normal) &&
-           near_chords(around, box, corners, next, signs);
-}
-
 // Do all crossings in the box lie in a slab that is thin enough? The slab is across `normal`, or across a normal that
 // is fitted to the crossings if that promises to help. `corners` are the crossings on the box's edges, `first` is the
 // first of them.
-bool Flatness::in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners, const Spot& first,
-                       Spot normal) const {
+ISOCORE_INLINED bool Flatness::in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners,
+                                       const Spot& first, Spot normal) const {
     const Numbers heights = over(normal, corners[0], corners[1], corners[2]);
     if (heights.greatest_lane() - heights.least_lane() > kWorthFitting * max_error_) return false;
     const float thickness = width(around, box, normal);
@@ -146,8 +137,8 @@ bool Flatness::in_slab(const Cloud& around, const Extent& box, const Vector<Numb
 // Does every crossing on a face of the box lie near the chord, the line through the two crossings on the face's rim?
 // (It then lies near the segment between the two, because the iso-lines of a face are monotone along both axes.) Lane n
 // of `from` and `to` is the n-th chord of the box's rim.
-bool Flatness::near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from,
-                           const Vector<Numbers>& to, unsigned signs) const {
+ISOCORE_INLINED bool Flatness::near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from,
+                                           const Vector<Numbers>& to, unsigned signs) const {
     const Rim& rim = kRims[signs];
     // Vectors across the chords within their faces, as long as the chords: (x, y) becomes (y, -x).
     const auto along = minus(to, from);
@@ -172,6 +163,16 @@ bool Flatness::near_chords(const Cloud& around, const Extent& box, const Vector<
         }
     }
     return !far.any();
+}
+
+bool Flatness::operator()(const Cloud& around, const Extent& box, unsigned signs, const Ring& ring) const {
+    const auto corners = places(box, kRimLanes[signs], ring);
+    const Vector<Numbers> next{corners[0].rotated(), corners[1].rotated(), corners[2].rotated()};
+    const Spot first{corners[0].first(), corners[1].first(), corners[2].first()};
+    const auto normals = cross(minus(corners, {first[0], first[1], first[2]}), minus(next, corners));
+    Spot normal{normals[0].sum(), normals[1].sum(), normals[2].sum()};
+    return normalise(normal) && in_slab(around, box, corners, first, normal) &&
+           near_chords(around, box, corners, next, signs);
 }
 
 }  // namespace isocore::climbing
