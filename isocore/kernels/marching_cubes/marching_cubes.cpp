@@ -13,6 +13,7 @@
 #include "common/parallel.hpp"
 #include "marching_cubes/counting.hpp"
 #include "marching_cubes/drawing.hpp"
+#include "samples/row_vertices.hpp"
 #include "samples/sample_reader.hpp"
 #include "samples/sample_types.hpp"
 #include "samples/signs.hpp"

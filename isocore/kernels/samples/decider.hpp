@@ -1,4 +1,5 @@
-// decider.hpp - The decisions a cell with alternating faces needs, taken from its samples.
+// decider.hpp - The decisions that a cell with alternating faces needs, taken from its samples by the asymptotic
+// decider (crossing.hpp).
 #pragma once
 
 #include <bit>
@@ -11,7 +12,9 @@
 
 namespace isocore {
 
-// Are the inside corners of an alternating face of the cell at `cell` (padding included) joined?
+// Are the inside corners of an alternating face joined? `corners` are the cell's corner signs; `cell` is its lowest
+// sample in the grid of signs, which has `pad` layers around the samples; faces and corners are numbered as in
+// cube.hpp.
 template <class Sample>
 bool face_joined(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners, const Dims& cell,
                  int face) {
@@ -25,7 +28,8 @@ bool face_joined(const GridView<Sample>& samples, std::size_t pad, double isoval
     return inside_corners_joined(value(in), value(in + 2), value(1 - in), value(3 - in), isovalue);
 }
 
-// The decisions of all alternating faces, packed as cell_loops::Corners wants them.
+// The decisions of all alternating faces, one bit each in ascending order of faces: bit n is that of the n-th bit of
+// cell_loops::Corners::ambiguous. A case's number is Corners::first plus this.
 template <class Sample>
 unsigned decide_faces(const GridView<Sample>& samples, std::size_t pad, double isovalue, unsigned corners,
                       const Dims& cell) {

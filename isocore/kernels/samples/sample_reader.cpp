@@ -9,19 +9,20 @@
 namespace isocore {
 namespace {
 
-// Where an edge into the padding is crossed: next to the volume's own sample. 0 for any other edge.
+// Where an edge between the padding and the volume is crossed: as near to the volume's own sample as kClamp allows. 0
+// for any other edge.
 double border_crossing(const SignGrid& signs, int axis, std::size_t start) {
     if (!signs.pad) return 0;
     return start == 0 ? 1 - kClamp : start == signs.dims[static_cast<std::size_t>(axis)] - 2 ? kClamp : 0;
 }
 
-// The lower sample of a grid edge that is not in the padding.
+// The lower sample of a grid edge that starts at `at` and lies in the volume.
 template <class Sample>
 const Sample* edge_start(const GridView<Sample>& samples, const SignGrid& signs, const Dims& at) {
     return samples.data + samples.index(at[0] - signs.pad, at[1] - signs.pad, at[2] - signs.pad);
 }
 
-// Where the grid edge along `axis` that starts at a sample is crossed, as a share of the way.
+// Where the grid edge along `axis` that starts at `at` is crossed, t in [0, 1].
 template <class Sample>
 double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, int axis,
                      const Dims& at) {
@@ -30,6 +31,9 @@ double edge_crossing(const GridView<Sample>& samples, const SignGrid& signs, dou
     return crossing(low[0], low[samples.step(axis)], isovalue);
 }
 
+// The same as a quotient. Integers of up to 32 bits and their differences are exact in double, and a quotient of two
+// floats is precise enough for tests of flatness and distances; samples that are floats may be huge or not finite, so
+// they are divided in double at once.
 struct Quotient {
     float part, whole;
 };

@@ -1,37 +1,41 @@
-// sample_reader.hpp - The one door through which drawing reads samples. Signs tell all that is combinatorial; what
-// needs the samples themselves is where an edge is crossed and how an ambiguous face is decided. Both are asked for
-// many at a time, so that nothing beyond this door is compiled for each of the eight sample types, at the price of one
-// indirect call for a row or a few hundred edges.
+// sample_reader.hpp - The one door through which drawing reads samples. Signs tell all that is combinatorial; the
+// samples themselves are needed for where an edge is crossed and how an ambiguous face is decided, and nothing else:
+//
+//     signs  -------------------------------------->  which boxes, loops, triangles
+//     samples --> SamplesOf<uint8> ... <double> -+
+//                                  SampleReader  +->  quotients (positions), face decisions, rows of vertices
+//
+// So nothing beyond this door is compiled once for each of the eight sample types. Its functions are virtual, but
+// answer for many edges at a time: one indirect call for a row of vertices or for a few hundred edges.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 
 #include "common/grid.hpp"
 #include "common/set_bits.hpp"
-#include "samples/crossed_edges.hpp"
 #include "samples/edge.hpp"
 #include "samples/signs.hpp"
 
 namespace isocore {
 
-// Whose bits a word of crossed edges of a row are: bit b is the edge along `axis` that starts at sample `first` + b.
+// Tells which edges of a row the bits of a word are: bit b is the edge along `axis` that starts at sample `first` + b.
 struct WordOfEdges {
     int axis;
     std::size_t first;
 };
 using CrossedWords = SetBits<WordOfEdges, 32>;
 
-// Samples are numbered as the signs are, padding included.
+// Samples are numbered as in the grid of signs, padding included.
 class SampleReader {
   public:
     virtual ~SampleReader() = default;
 
-    // Where crossed edges of the block at `origin` are crossed, as a share of their way: parts[n] / wholes[n], yet to
-    // be divided and clamped to [kClamp, 1 - kClamp] (crossing.hpp).
+    // Where crossed edges of the block at `origin` are crossed, t in [0, 1] along each edge, as quotients: the caller
+    // divides parts[n] by wholes[n], many at once, and clamps to [kClamp, 1 - kClamp] (crossing.hpp). For an edge from
+    // sample 10 to sample 30 and isovalue 15 they are 5 and 20.
     virtual void quotients(const Dims& origin, std::span<const Edge> edges, float* parts, float* wholes) const = 0;
 
     // Writes the vertices (x, y, z in samples of the volume, without padding) of the edges of row (j, k) that `words`
@@ -39,8 +43,7 @@ class SampleReader {
     virtual float* write_vertices(std::size_t j, std::size_t k, CrossedWords& words, float* out) const = 0;
     virtual double* write_vertices(std::size_t j, std::size_t k, CrossedWords& words, double* out) const = 0;
 
-    // The decisions of all alternating faces of a cell with these corner signs, packed as cell_loops::Corners wants
-    // them.
+    // The decisions of all alternating faces of a cell with these corner signs, packed as in decider.hpp.
     virtual unsigned decide_faces(unsigned corners, const Dims& cell) const = 0;
 
     // The samples at the corners of a cell that has none in the padding, numbered as in cube.hpp.
@@ -66,31 +69,5 @@ class SamplesOf final : public SampleReader {
     const SignGrid& signs_;
     double isovalue_;
 };
-
-// Writes the vertices of row (j, k) in order, from `out` on, and returns the end: those of the edges along each axis
-// whose bits `edges(axis, w)` gives.
-template <class Coordinate, class Edges>
-Coordinate* write_row_vertices(const SampleReader& samples, const SignGrid& signs, std::size_t j, std::size_t k,
-                               Coordinate* out, const Edges& edges) {
-    CrossedWords found;
-    const auto find = [&](auto axis) {
-        for (std::size_t w = 0; w < signs.words; ++w) {
-            found.add(edges(axis, w), {axis, 64 * w});
-            if (found.full()) out = samples.write_vertices(j, k, found, out);
-        }
-    };
-    find(std::integral_constant<int, 0>{});
-    find(std::integral_constant<int, 1>{});
-    find(std::integral_constant<int, 2>{});
-    return samples.write_vertices(j, k, found, out);
-}
-
-// The same for all crossed edges of the row.
-template <class Coordinate>
-Coordinate* write_row_vertices(const SampleReader& samples, const SignGrid& signs, std::size_t j, std::size_t k,
-                               Coordinate* out) {
-    return write_row_vertices(samples, signs, j, k, out,
-                              [&](auto axis, std::size_t w) { return crossed_edges(signs, axis, j, k, w); });
-}
 
 }  // namespace isocore

@@ -1,8 +1,7 @@
-// bar_shadow.hpp - The rows of a bar, one laid over the other: they tell which of its blocks have samples on both
-// sides, so that only those are read.
+// bar_shadow.hpp - All rows of a bar, laid over each other: the OR and the AND of their sign bits. They tell which of
+// its blocks have samples on both sides, so that only those are read.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,28 +13,17 @@ namespace isocore::climbing {
 
 class BarShadow {
   public:
-    // Of the bar of blocks of N^3 cells that starts at row (y, z).
-    BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z)
-        : any_(signs.words + 1, 0), all_(signs.words + 1, ~std::uint64_t{0}) {
-        for (std::size_t k = z; k < std::min(z + N + 1, signs.dims[2]); ++k) {
-            for (std::size_t j = y; j < std::min(y + N + 1, signs.dims[1]); ++j) {
-                const SignRow row = signs.row(j, k);
-                for (std::size_t w = 0; w < signs.words; ++w) {
-                    any_[w] |= row.word(w);
-                    all_[w] &= row.word(w);
-                }
-            }
-        }
-    }
+    // Of the bar of blocks of N^3 cells whose first row is (y, z).
+    BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z);
 
-    // Does a block from sample x on hold any crossing, if it has so many cells along the bar?
+    // Has the block of `cells` cells along x from sample x on samples on both sides?
     bool crosses(std::size_t x, std::size_t cells) const {
         const std::uint64_t samples = (std::uint64_t{2} << cells) - 1;
         return (bits_from(any_.data(), x) & samples) != 0 && (bits_from(all_.data(), x) & samples) != samples;
     }
 
   private:
-    std::vector<std::uint64_t> any_, all_;
+    std::vector<std::uint64_t> any_, all_;  // one word more than a row has, as bits_from() may read it
 };
 
 }  // namespace isocore::climbing

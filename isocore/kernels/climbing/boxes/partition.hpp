@@ -2,8 +2,6 @@
 // halved along the axis whose halves come off best. (The paper grows them bottom up, by plots and padis.)
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -14,15 +12,15 @@
 
 namespace isocore::climbing {
 
-// A row of blocks along the first axis: the unit of parallel work.
+// What partition makes of a bar, a row of blocks along the first axis.
 struct BarBoxes {
     Halvings halvings;
     std::size_t blocks = 0, highrices = 0;  // blocks with samples on both sides, and what they are halved down to
 };
 
-// Finds the highrices of all bars, [z][y], and keeps the crossings on their edges. Without a gatherer every box is flat
-// enough.
-// The block size is 1, 2, 4, 8, 16 or 32.
+// Finds the highrices of all bars, [z][y], and keeps the crossings on their edges in the layout. Without a gatherer
+// there is no error bound, and every box is flat enough. The block size is 1, 2, 4, 8, 16 or 32; the bars are the same
+// for any number of threads.
 std::vector<BarBoxes> partition_bars(const SignGrid& signs, int block_size, int threads, const Gatherer* gatherer,
                                      Layout& layout);
 
