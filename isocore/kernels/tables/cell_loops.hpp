@@ -14,6 +14,7 @@ namespace isocore::cell_loops {
 inline constexpr int kMaxTriangles = 10;
 inline constexpr int kCases = 656;
 
+// What is drawn in a cell. Triangles name the cell's edges, numbered as in cube.hpp.
 template <int max_triangles>
 struct CaseOf {
     std::uint8_t triangles = 0;
@@ -23,11 +24,14 @@ struct CaseOf {
 };
 using Case = CaseOf<kMaxTriangles>;
 
+// What eight corner signs lead to: case number `first` plus the decisions of the ambiguous faces. Bit n of the
+// decisions is 1 if the inside corners of the n-th ambiguous face, in ascending order, are joined.
 struct Corners {
-    std::uint16_t first = 0;     // its cases follow each other, by the decisions of its ambiguous faces
-    std::uint8_t ambiguous = 0;  // one bit per face with alternating corners
+    std::uint16_t first = 0;
+    std::uint8_t ambiguous = 0;  // the faces with alternating corners, a bit each
 };
 
+// `corners` is indexed by the corner signs, bit c for corner c.
 template <class AnyCase>
 struct TableOf {
     std::array<Corners, 256> corners{};

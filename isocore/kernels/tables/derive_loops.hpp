@@ -25,6 +25,7 @@ namespace isocore::cell_loops::derivation {
 
 enum class FaceDiagonals { shared_out, none };
 
+// The loops of a case: the edges of each, in order.
 struct Loops {
     std::array<std::array<int, 12>, 4> edges{};
     std::array<int, 4> lengths{};
@@ -53,6 +54,8 @@ constexpr std::array<int, 12> segments(unsigned corners, unsigned joined) {
     return next;
 }
 
+// Follows the segments from edge to edge, which closes all loops. `joined`: a bit per face, set if its inside corners
+// are joined; it matters for ambiguous faces only.
 constexpr Loops trace(unsigned corners, unsigned joined) {
     const auto next = segments(corners, joined);
     Loops loops;
@@ -68,9 +71,12 @@ constexpr Loops trace(unsigned corners, unsigned joined) {
     return loops;
 }
 
+// The penalties of a diagonal in a face that this cell may draw, and of one that it must leave to the cell across. The
+// first is more than all other diagonals of a loop cost together, the second more than all of the first kind.
 inline constexpr int kInFace = 1'000, kForbidden = 1'000'000;
 
-// What a diagonal between two crossed edges costs: its squared length, measured in half cells.
+// The cost of a diagonal between two crossed edges: its squared length, measured in half cells, plus a penalty where it
+// lies in a face.
 constexpr int diagonal_cost(int a, int b, FaceDiagonals rule) {
     int cost = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -85,7 +91,8 @@ constexpr int diagonal_cost(int a, int b, FaceDiagonals rule) {
     return cost + (for_cell_above == cell_is_above ? kInFace : kForbidden);
 }
 
-// The cheapest triangulation of one loop, by dynamic programming over its sub-polygons.
+// Adds the cheapest triangulation of one loop to a case, by dynamic programming over its sub-polygons: cost[i][j] is
+// that of the polygon from corner i to corner j, and apex[i][j] the third corner of the triangle on its side (i, j).
 template <class AnyCase>
 constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiagonals rule, AnyCase& out) {
     const auto draw = [&](int a, int b, int c) {
@@ -104,10 +111,10 @@ constexpr void triangulate(const std::array<int, 12>& loop, int length, FaceDiag
             const int j = i + span;
             int best = -1;
             for (int k = i + 1; k < j; ++k) {
-                const int price = cost[static_cast<unsigned>(i)][static_cast<unsigned>(k)] + chord(i, k) +
-                                  cost[static_cast<unsigned>(k)][static_cast<unsigned>(j)] + chord(k, j);
-                if (best < 0 || price < best) {
-                    best = price;
+                const int through_k = cost[static_cast<unsigned>(i)][static_cast<unsigned>(k)] + chord(i, k) +
+                                      cost[static_cast<unsigned>(k)][static_cast<unsigned>(j)] + chord(k, j);
+                if (best < 0 || through_k < best) {
+                    best = through_k;
                     apex[static_cast<unsigned>(i)][static_cast<unsigned>(j)] = k;
                 }
             }
@@ -144,7 +151,7 @@ constexpr AnyCase derive_case(unsigned corners, unsigned joined, FaceDiagonals r
     return out;
 }
 
-// Spread the low bits of `packed` over the set bits of `mask`.
+// Deposits the low bits of `packed` at the set bits of `mask` (the processor's pdep, at compile time).
 constexpr unsigned spread(unsigned packed, unsigned mask) {
     unsigned out = 0;
     for (; mask != 0; mask &= mask - 1, packed >>= 1) {

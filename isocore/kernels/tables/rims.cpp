@@ -10,6 +10,7 @@
 namespace isocore::climbing {
 namespace {
 
+// A box is no disk if its corners show more loops than one, or an ambiguous face: then they do not tell how many.
 constexpr std::array<Content, 256> derive_contents() {
     std::array<Content, 256> contents{};
     for (unsigned corners = 0; corners < 256; ++corners) {
@@ -21,6 +22,7 @@ constexpr std::array<Content, 256> derive_contents() {
 }
 constexpr std::array<Content, 256> kDerivedContents = derive_contents();
 
+// BoxCorners, evaluated one box at a time, agrees with the table.
 static_assert([] {
     for (unsigned corners = 0; corners < 256; ++corners) {
         std::array<unsigned, 8> bits{};
@@ -51,6 +53,7 @@ constexpr std::array<Rim, 256> derive_rims() {
 }
 constexpr std::array<Rim, 256> kDerivedRims = derive_rims();
 
+// By edge: the two faces that it lies on, a bit each.
 constexpr std::array<std::uint8_t, 12> kFacesOfEdge = [] {
     std::array<std::uint8_t, 12> faces{};
     for (int edge = 0; edge < 12; ++edge) {
@@ -119,6 +122,7 @@ constinit const std::array<LoopStops, 256> kStops = [] {
     }
     return stops;
 }();
+
 constinit const std::array<std::uint8_t, 64> kPartOfSurface = [] {
     std::array<std::uint8_t, 64> parts{};
     for (std::uint8_t edge = 0; edge < 12; ++edge) parts[kFacesOfEdge[edge]] = edge;

@@ -89,21 +89,23 @@ struct Strip {
     constexpr int ahead_at(int i) const { return ahead[at(i % m)]; }
     constexpr int back_at(int j) const { return back[at(j % n)]; }
 
-    // i and j: how far along either loop; three steps are the least that go round one without a side used twice.
-    constexpr void search(int first, int i, int j, int taken, int paid) {
-        if (paid >= cost) return;
+    // Depth-first search, cut off where it costs more than the best strip so far. i and j are how far the strip is
+    // along either loop. At least three of its steps must go along the longer loop, as with fewer a side would be used
+    // twice.
+    constexpr void search(int first, int i, int j, int taken, int cost_so_far) {
+        if (cost_so_far >= cost) return;
         if (i == m && j == n) {
             if (taken - m < 3 || goes_round_at_once(taken)) return;
-            cost = paid;
+            cost = cost_so_far;
             start = first;
             length = taken;
             steps = tried;
             return;
         }
-        const int bridge = paid + diagonal_cost(ahead_at(i), back_at(first + j));
-        const auto go = [&](Step step, int to_i, int to_j, int price) {
+        const int bridge = cost_so_far + diagonal_cost(ahead_at(i), back_at(first + j));
+        const auto go = [&](Step step, int to_i, int to_j, int cost_there) {
             tried[at(taken)] = step;
-            search(first, to_i, to_j, taken + 1, price);
+            search(first, to_i, to_j, taken + 1, cost_there);
         };
         if (i < m) go(Step::ahead, i + 1, j, bridge);
         if (j < n) go(Step::back, i, j + 1, bridge);

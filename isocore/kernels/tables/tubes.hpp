@@ -12,13 +12,13 @@ namespace isocore::marching_cubes {
 
 struct Tube {
     std::uint8_t one = 0, other = 0;  // the groups that meet, a bit per corner
-    cell_loops::CaseOf<12> drawn;     // the whole cell; `loops` counts them as they lie on the boundary
+    cell_loops::CaseOf<12> drawn;     // the whole cell; `loops` is the number of loops on the cell's boundary
 };
 
 inline constexpr int kTubes = 196;
 
 struct TubeTable {
-    std::array<std::uint16_t, cell_loops::kCases + 1> first{};  // the tubes of a case follow each other
+    std::array<std::uint16_t, cell_loops::kCases + 1> first{};  // case n has tubes first[n] to first[n + 1] - 1
     std::array<Tube, kTubes> tubes{};
 };
 
