@@ -81,9 +81,9 @@ void distances_are_those_of_the_definition() {
         Vector<std::vector<float>> rows;
         for (std::size_t a = 0; a < 3; ++a) {
             for (const Spot& point : points) rows[a].push_back(point[a]);
-            rows[a].resize(points.size() + kLanes<float>);
+            rows[a].resize(points.size() + kLanes);
         }
-        std::vector<float> found(points.size() + kLanes<float>);
+        std::vector<float> found(points.size() + kLanes);
         facets->squared_distances(first, count, {rows[0].data(), rows[1].data(), rows[2].data()}, points.size(),
                                   found.data());
         for (std::size_t n = 0; n < points.size(); ++n) {

@@ -14,7 +14,7 @@
 namespace {
 
 using namespace isocore;
-using Row = std::array<float, kLanes<float>>;
+using Row = std::array<float, kLanes>;
 using Limits = std::numeric_limits<float>;
 
 std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
@@ -54,7 +54,7 @@ Row random_row(std::mt19937& random) {
 // Half of the lanes of another row, so that equal ones meet.
 Row like(const Row& row, std::mt19937& random) {
     Row out = random_row(random);
-    for (std::size_t n = 0; n < kLanes<float>; ++n) {
+    for (std::size_t n = 0; n < kLanes; ++n) {
         if (random() % 2) out[n] = row[n];
     }
     return out;
@@ -62,12 +62,12 @@ Row like(const Row& row, std::mt19937& random) {
 
 template <class Same, class Rule>
 void check_lanes(const Row& found, const Same& same, const Rule& expected) {
-    for (std::size_t n = 0; n < kLanes<float>; ++n) CHECK(same(found[n], expected(n)));
+    for (std::size_t n = 0; n < kLanes; ++n) CHECK(same(found[n], expected(n)));
 }
 template <class Mask, class Rule>
 void check_mask(const Mask& found, const Rule& expected) {
     unsigned bits = 0;
-    for (std::size_t n = 0; n < kLanes<float>; ++n) bits |= static_cast<unsigned>(expected(n)) << n;
+    for (std::size_t n = 0; n < kLanes; ++n) bits |= static_cast<unsigned>(expected(n)) << n;
     CHECK(found.bits() == bits);
     CHECK(found.any() == (bits != 0));
 }
@@ -119,7 +119,7 @@ void lanes_are_chosen_bit_by_bit(std::mt19937& random) {
     check_lanes(tagged(a).each(), is_same, [&](std::size_t n) {
         return std::bit_cast<float>((bits_of(p[n]) & ~7u) | static_cast<std::uint32_t>(n));
     });
-    for (std::size_t count = 0; count <= kLanes<float>; ++count)
+    for (std::size_t count = 0; count <= kLanes; ++count)
         check_lanes(first_lanes(a, count, b).each(), is_same, [&](std::size_t n) { return n < count ? p[n] : q[n]; });
     check_lanes(Eight(p[3]).each(), is_same_result, [&](std::size_t) { return p[3]; });
 }
@@ -129,17 +129,17 @@ void lanes_move_where_they_should(std::mt19937& random) {
     using Eight = FloatLanes<width>;
     const Row p = random_row(random);
     const Eight a(p.data());
-    check_lanes(a.rotated().each(), is_same, [&](std::size_t n) { return p[(n + 1) % kLanes<float>]; });
+    check_lanes(a.rotated().each(), is_same, [&](std::size_t n) { return p[(n + 1) % kLanes]; });
     CHECK(is_same(a.first(), p[0]));
     for (unsigned bits = 0; bits < 256; ++bits) {
-        std::array<float, kLanes<float> + 1> room;
+        std::array<float, kLanes + 1> room;
         room.fill(77);
         a.pack(bits, room.data());
         std::size_t next = 0;
-        for (std::size_t n = 0; n < kLanes<float>; ++n) {
+        for (std::size_t n = 0; n < kLanes; ++n) {
             if (bits >> n & 1) CHECK(is_same(room[next++], p[n]));
         }
-        CHECK(is_same(room[kLanes<float>], 77));
+        CHECK(is_same(room[kLanes], 77));
     }
 }
 

@@ -95,7 +95,7 @@ auto Disks::rank(std::span<const std::uint8_t> boxes) const -> std::array<LoopRa
         const std::size_t first = edges_.first_kept(boxes[n]);
         for (std::size_t e = 0; e < length; ++e) out[e][n] = loops_.place(first + e);
     }
-    using Floats = Lanes<float>;
+    using Floats = Floats;
     std::array<Floats, length> places;
     for (std::size_t e = 0; e < length; ++e) places[e] = Floats(out[e].data());
     const Floats zero(0.0f), one(1.0f);

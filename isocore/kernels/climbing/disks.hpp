@@ -39,7 +39,7 @@ class Disks {
   private:
     template <std::size_t... n>
     static std::tuple<Polygons<n + 3>...> all_polygons(std::index_sequence<n...>);
-    using LoopRanks = std::array<float, kLanes<float>>;  // by loop
+    using LoopRanks = std::array<float, kLanes>;  // by loop
 
     void draw_added(const DrawnSite& site, TriangleList& out, Bar& bar);
     void sort_by_length();

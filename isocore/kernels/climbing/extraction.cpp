@@ -15,6 +15,7 @@
 #include "climbing/triangles/placed_vertices.hpp"
 #include "common/parallel.hpp"
 #include "samples/crossed_edges.hpp"
+#include "samples/row_vertices.hpp"
 
 namespace isocore::climbing {
 namespace {

@@ -25,8 +25,7 @@
 
 namespace isocore {
 
-template <class T>
-inline constexpr std::size_t kLanes = 32 / sizeof(T);
+inline constexpr std::size_t kLanes = 8;
 
 // The lanes of one register; a single one where the compiler has no vector types (MSVC, GCC before 12). A vector type
 // of eight lanes would do everywhere, but where registers are narrower, GCC compares its lanes one after the other.
@@ -100,8 +99,8 @@ struct Register {
 
 // rule(n) of each register that eight lanes take.
 template <class Type, class Rule>
-std::array<Type, kLanes<float> * sizeof(float) / sizeof(Type)> each_register(const Rule& rule) {
-    std::array<Type, kLanes<float> * sizeof(float) / sizeof(Type)> out;
+std::array<Type, kLanes * sizeof(float) / sizeof(Type)> each_register(const Rule& rule) {
+    std::array<Type, kLanes * sizeof(float) / sizeof(Type)> out;
     for (std::size_t n = 0; n < out.size(); ++n) out[n] = static_cast<Type>(rule(n));
     return out;
 }
@@ -110,7 +109,7 @@ std::array<Type, kLanes<float> * sizeof(float) / sizeof(Type)> each_register(con
 template <std::size_t width>
 struct LaneMask {
     using Ints = typename Register<width>::Ints;
-    std::array<Ints, kLanes<float> / width> registers;
+    std::array<Ints, kLanes / width> registers;
 
     friend LaneMask operator&(const LaneMask& a, const LaneMask& b) {
         return {each_register<Ints>([&](std::size_t n) { return a.registers[n] & b.registers[n]; })};
@@ -130,7 +129,7 @@ struct LaneMask {
 #if defined(__AVX2__)
 // For each mask: the numbers of the lanes whose bits are set, in order, then zeros.
 inline constexpr auto kPackedLanes = [] {
-    std::array<std::array<std::int32_t, kLanes<float>>, 256> order{};
+    std::array<std::array<std::int32_t, kLanes>, 256> order{};
     for (unsigned bits = 0; bits < order.size(); ++bits) {
         std::size_t next = 0;
         for (std::int32_t lane = 0; lane < 8; ++lane) {
@@ -153,15 +152,13 @@ class FloatLanes {
     }
     explicit FloatLanes(const float* from) { std::memcpy(&registers_, from, sizeof registers_); }
     void store(float* to) const { std::memcpy(to, &registers_, sizeof registers_); }
-    std::array<float, kLanes<float>> each() const {
-        return std::bit_cast<std::array<float, kLanes<float>>>(registers_);
-    }
+    std::array<float, kLanes> each() const { return std::bit_cast<std::array<float, kLanes>>(registers_); }
     float first() const { return each()[0]; }
     // Writes the lanes whose bits are set, one after the other. It may write as many floats as there are lanes: what
     // follows in `to` is lost.
     void pack(unsigned bits, float* to) const {
 #if defined(__AVX2__)
-        if constexpr (width == kLanes<float>) {
+        if constexpr (width == kLanes) {
             const auto order = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(kPackedLanes[bits].data()));
             return _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(registers_[0], order));
         }
@@ -215,13 +212,13 @@ class FloatLanes {
     }
     // The first `count` lanes of a, and the others of b.
     friend FloatLanes first_lanes(const FloatLanes& a, std::size_t count, const FloatLanes& b) {
-        static constexpr std::array<float, kLanes<float>> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
+        static constexpr std::array<float, kLanes> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
         return choose(FloatLanes(kNumbers.data()) < static_cast<float>(count), a, b);
     }
     // The lanes with their numbers, 0 to 7, in place of their last three bits: so the least lane tells which it was.
     friend FloatLanes tagged(const FloatLanes& a) {
-        static constexpr std::array<std::int32_t, kLanes<float>> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
-        const auto numbers = std::bit_cast<std::array<Ints, kLanes<float> / width>>(kNumbers);
+        static constexpr std::array<std::int32_t, kLanes> kNumbers{0, 1, 2, 3, 4, 5, 6, 7};
+        const auto numbers = std::bit_cast<std::array<Ints, kLanes / width>>(kNumbers);
         return by([&](std::size_t n) { return std::bit_cast<Reals>((a.ints(n) & ~7) | numbers[n]); });
     }
 
@@ -276,11 +273,9 @@ class FloatLanes {
             return fold<distance / 2>(rule(a, a.template swapped<distance>()), rule);
     }
 
-    std::array<Reals, kLanes<float> / width> registers_;
+    std::array<Reals, kLanes / width> registers_;
 };
 
 using Floats = FloatLanes<kRegisterLanes>;
-template <class T>
-using Lanes = Floats;
 
 }  // namespace isocore

@@ -15,7 +15,7 @@ class Flatness {
   public:
     // The crossings on a box's edges, in the order of its Rim (rims.hpp), one lane each: where each is along its edge's
     // axis. Lanes past the rim's length repeat the first crossing.
-    using Ring = std::array<float, kLanes<float>>;
+    using Ring = std::array<float, kLanes>;
 
     explicit Flatness(double max_error) : max_error_(kMargin * static_cast<float>(max_error)) {}
 
@@ -28,9 +28,9 @@ class Flatness {
     // measured, and be halved late.
     static constexpr float kMargin = 1 - 1.0f / 65536;
 
-    bool in_slab(const Cloud& around, const Extent& box, const Vector<Numbers>& corners, const Spot& first,
+    bool in_slab(const Cloud& around, const Extent& box, const Vector<Floats>& corners, const Spot& first,
                  Spot normal) const;
-    bool near_chords(const Cloud& around, const Extent& box, const Vector<Numbers>& from, const Vector<Numbers>& to,
+    bool near_chords(const Cloud& around, const Extent& box, const Vector<Floats>& from, const Vector<Floats>& to,
                      unsigned signs) const;
 
     float max_error_;

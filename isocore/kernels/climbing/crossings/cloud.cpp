@@ -24,15 +24,15 @@ Cloud Clouds::finish() {
     Cloud out;
     out.size = top_ - start_;
     for (std::size_t a = 0; a < 3; ++a) out.axes[a] = places_[a] + start_;
-    for (float* axis : places_) Numbers(std::numeric_limits<float>::infinity()).store(axis + top_);
-    out.lanes = (out.size + kLanes<float> - 1) / kLanes<float> * kLanes<float>;
+    for (float* axis : places_) Floats(std::numeric_limits<float>::infinity()).store(axis + top_);
+    out.lanes = (out.size + kLanes - 1) / kLanes * kLanes;
     start_ = top_ = start_ + out.lanes;
     return out;
 }
 
 Cloud Clouds::push(const Cloud& from, const Extent& box) {
-    for (std::size_t n = 0; n < from.lanes; n += kLanes<float>) {
-        const Numbers x(from.axes[0] + n), y(from.axes[1] + n), z(from.axes[2] + n);
+    for (std::size_t n = 0; n < from.lanes; n += kLanes) {
+        const Floats x(from.axes[0] + n), y(from.axes[1] + n), z(from.axes[2] + n);
         const unsigned here = within(box, x, y, z).bits();
         x.pack(here, places_[0] + top_);
         y.pack(here, places_[1] + top_);
@@ -47,8 +47,7 @@ Cloud Clouds::push(const Cloud& from, const Extent& box) {
 std::size_t Clouds::room(std::size_t crossings) const {
     constexpr std::size_t kMost = 6;  // lengths 1, 2, 4, ... 32
     const auto of_box = [&](std::size_t a, std::size_t b, std::size_t c) {
-        return std::min(crossings, a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1)) +
-               2 * kLanes<float>;
+        return std::min(crossings, a * (b + 1) * (c + 1) + b * (c + 1) * (a + 1) + c * (a + 1) * (b + 1)) + 2 * kLanes;
     };
     std::array<std::array<std::array<std::size_t, kMost>, kMost>, kMost> rooms;  // by the logarithms of the lengths
     for (std::size_t x = 0; x < kMost; ++x) {

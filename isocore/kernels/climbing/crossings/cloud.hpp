@@ -23,12 +23,10 @@ struct Cloud {
     std::size_t size = 0, lanes = 0;
 };
 
-using Numbers = Lanes<float>;
-
 // Which of eight spots lie in a closed box.
-inline Floats::Mask within(const Extent& box, const Numbers& x, const Numbers& y, const Numbers& z) {
-    return (Numbers(box.low[0]) <= x) & (x <= box.high[0]) & (Numbers(box.low[1]) <= y) & (y <= box.high[1]) &
-           (Numbers(box.low[2]) <= z) & (z <= box.high[2]);
+inline Floats::Mask within(const Extent& box, const Floats& x, const Floats& y, const Floats& z) {
+    return (Floats(box.low[0]) <= x) & (x <= box.high[0]) & (Floats(box.low[1]) <= y) & (y <= box.high[1]) &
+           (Floats(box.low[2]) <= z) & (z <= box.high[2]);
 }
 
 // A stack of clouds: that of a block, that of one of its halves, that of one of the half's halves, and so on.
@@ -41,7 +39,7 @@ class Clouds {
     // Forgets all clouds, for a block with that many crossings; they are then added, and finish() makes them a cloud.
     void begin(std::size_t crossings);
     // Adds the first `count` lanes of some spots to the cloud at the top, which is not finished yet.
-    void add(const Vector<Numbers>& spots, std::size_t count) {
+    void add(const Vector<Floats>& spots, std::size_t count) {
         for (std::size_t a = 0; a < 3; ++a) spots[a].store(places_[a] + top_);
         top_ += count;
     }

@@ -18,8 +18,6 @@ namespace isocore::climbing {
 template <std::size_t room>
 class Spotter {
   public:
-    using Numbers = Lanes<float>;
-
     explicit Spotter(const SampleReader& samples) : samples_(samples) {}
 
     bool full() const { return size_ == room; }
@@ -38,23 +36,23 @@ class Spotter {
     template <class Visit>
     void visit(const Dims& origin, const Spot& scale, const Visit& visit) {
         samples_.quotients(origin, {edges_.data(), size_}, parts_.data(), wholes_.data());
-        const Numbers zero(0.0f), lowest(static_cast<float>(kClamp)), highest(static_cast<float>(1 - kClamp));
-        for (std::size_t n = 0; n < size_; n += kLanes<float>) {
-            const Numbers share =
-                least(highest, greatest(lowest, Numbers(parts_.data() + n) / Numbers(wholes_.data() + n)));
-            const Numbers axis(axes_.data() + n);
-            Vector<Numbers> places;
+        const Floats zero(0.0f), lowest(static_cast<float>(kClamp)), highest(static_cast<float>(1 - kClamp));
+        for (std::size_t n = 0; n < size_; n += kLanes) {
+            const Floats share =
+                least(highest, greatest(lowest, Floats(parts_.data() + n) / Floats(wholes_.data() + n)));
+            const Floats axis(axes_.data() + n);
+            Vector<Floats> places;
             for (std::size_t a = 0; a < 3; ++a) {
-                const Numbers along = choose(axis == static_cast<float>(a), share, zero);
-                places[a] = (Numbers(starts_[a].data() + n) + along) * scale[a];
+                const Floats along = choose(axis == static_cast<float>(a), share, zero);
+                places[a] = (Floats(starts_[a].data() + n) + along) * scale[a];
             }
-            visit(places, share, n, std::min(kLanes<float>, size_ - n));
+            visit(places, share, n, std::min(kLanes, size_ - n));
         }
         size_ = 0;
     }
 
   private:
-    using NumberPerEdge = std::array<float, room + kLanes<float>>;  // the last register may reach past the last edge
+    using NumberPerEdge = std::array<float, room + kLanes>;  // the last register may reach past the last edge
 
     const SampleReader& samples_;
     std::size_t size_ = 0;

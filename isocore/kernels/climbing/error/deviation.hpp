@@ -13,10 +13,8 @@ namespace isocore::climbing {
 // One partial sum for each lane. They are added together only at the end.
 class Tally {
   public:
-    using Numbers = Lanes<float>;
-
     // Adds distances and their squares. A lane that is not used has 0 in both.
-    void add(const Numbers& distances, const Numbers& squared) {
+    void add(const Floats& distances, const Floats& squared) {
         most_ = greatest(most_, distances);
         const auto each = distances.each(), each_squared = squared.each();
         for (std::size_t n = 0; n < each.size(); ++n) {
@@ -29,7 +27,7 @@ class Tally {
     Deviation sum_up(double unit) const {
         Deviation out;
         out.max = unit * static_cast<double>(most_.greatest_lane());
-        for (std::size_t n = 0; n < kLanes<float>; ++n) {
+        for (std::size_t n = 0; n < kLanes; ++n) {
             out.sum += unit * sums_[n];
             out.squares += unit * unit * squares_[n];
         }
@@ -37,8 +35,8 @@ class Tally {
     }
 
   private:
-    Numbers most_ = 0.0f;
-    std::array<double, kLanes<float>> sums_{}, squares_{};
+    Floats most_ = 0.0f;
+    std::array<double, kLanes> sums_{}, squares_{};
 };
 
 }  // namespace isocore::climbing

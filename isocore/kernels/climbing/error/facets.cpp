@@ -6,28 +6,26 @@
 namespace isocore::climbing {
 
 void Facets::find_frames() {
-    for (std::size_t first = 0; first < size_; first += kLanes<float>) find_frames(first);
+    for (std::size_t first = 0; first < size_; first += kLanes) find_frames(first);
 }
 
 // The frames of triangle `first` and of those that follow it, one in each lane. The axis v is found by Gram-Schmidt
 // orthogonalisation: from the side a c, its part along u is subtracted. Triangles may be a thousand times longer than
 // wide; then one pass leaves a rest along u by rounding that is large beside v, and a second pass removes it.
 void Facets::find_frames(std::size_t first) {
-    const auto corner = [&](std::size_t column) -> Vector<Numbers> {
+    const auto corner = [&](std::size_t column) -> Vector<Floats> {
         return {in_lanes(column, first), in_lanes(column + 1, first), in_lanes(column + 2, first)};
     };
     const auto a = corner(kCornerA), bottom = minus(corner(kCornerB), a), left = minus(corner(kCornerC), a);
-    const Numbers one(1.0f), length = root(dot(bottom, bottom));
+    const Floats one(1.0f), length = root(dot(bottom, bottom));
     const auto axis_u = times(one / length, bottom);
-    const Numbers top_u = dot(left, axis_u);
+    const Floats top_u = dot(left, axis_u);
     const auto one_pass = minus(left, times(top_u, axis_u)),
                rise = minus(one_pass, times(dot(one_pass, axis_u), axis_u));
-    const Numbers top_v = root(dot(rise, rise));
+    const Floats top_v = root(dot(rise, rise));
     const auto axis_v = times(one / top_v, rise), axis_h = cross(axis_u, axis_v);
 
-    const auto set = [&](std::size_t column, const Numbers& numbers) {
-        numbers.store(columns_[column].data() + first);
-    };
+    const auto set = [&](std::size_t column, const Floats& numbers) { numbers.store(columns_[column].data() + first); };
     for (std::size_t n = 0; n < 3; ++n) {
         set(kAxisU + n, axis_u[n]);
         set(kAxisV + n, axis_v[n]);
@@ -43,54 +41,54 @@ void Facets::find_frames(std::size_t first) {
 void Facets::squared_distances(std::size_t first, std::size_t count, const Vector<const float*>& points,
                                std::size_t size, float* out) const {
     // Lanes hold triangles or points, whichever takes fewer registers in all. The bits that come out are the same.
-    const auto registers = [](std::size_t n) { return (n + kLanes<float> - 1) / kLanes<float>; };
+    const auto registers = [](std::size_t n) { return (n + kLanes - 1) / kLanes; };
     if (size * registers(count) < registers(size) * count) {
         for (std::size_t n = 0; n < size; ++n)
             out[n] = from_point(first, count, {points[0][n], points[1][n], points[2][n]});
     } else {
-        for (std::size_t n = 0; n < size; n += kLanes<float>) {
-            from_points(first, count, {Numbers(points[0] + n), Numbers(points[1] + n), Numbers(points[2] + n)})
+        for (std::size_t n = 0; n < size; n += kLanes) {
+            from_points(first, count, {Floats(points[0] + n), Floats(points[1] + n), Floats(points[2] + n)})
                 .store(out + n);
         }
     }
 }
 
 // From several points, one in each lane, to the nearest triangle: one triangle after the other.
-auto Facets::from_points(std::size_t first, std::size_t count, const Vector<Numbers>& points) const -> Numbers {
-    Numbers best(std::numeric_limits<float>::infinity());
+auto Facets::from_points(std::size_t first, std::size_t count, const Vector<Floats>& points) const -> Floats {
+    Floats best(std::numeric_limits<float>::infinity());
     for (std::size_t n = first; n < first + count; ++n)
-        best = least(best, squared_distances([&](std::size_t column) { return Numbers(columns_[column][n]); }, points));
+        best = least(best, squared_distances([&](std::size_t column) { return Floats(columns_[column][n]); }, points));
     return best;
 }
 
 // From one point, in all lanes, to the nearest triangle: several triangles at once.
-float Facets::from_point(std::size_t first, std::size_t count, const Vector<Numbers>& point) const {
-    const Numbers infinity(std::numeric_limits<float>::infinity());
-    Numbers best = infinity;
-    for (std::size_t n = 0; n < count; n += kLanes<float>) {
-        const Numbers to_each =
+float Facets::from_point(std::size_t first, std::size_t count, const Vector<Floats>& point) const {
+    const Floats infinity(std::numeric_limits<float>::infinity());
+    Floats best = infinity;
+    for (std::size_t n = 0; n < count; n += kLanes) {
+        const Floats to_each =
             squared_distances([&](std::size_t column) { return in_lanes(column, first + n); }, point);
-        best = least(best, first_lanes(to_each, std::min(kLanes<float>, count - n), infinity));
+        best = least(best, first_lanes(to_each, std::min(kLanes, count - n), infinity));
     }
     return best.least_lane();
 }
 
 // get(column): of one triangle in all lanes, or of one triangle in each.
 template <class Get>
-auto Facets::squared_distances(const Get& get, const Vector<Numbers>& points) -> Numbers {
-    const auto vector = [&](std::size_t column) -> Vector<Numbers> {
+auto Facets::squared_distances(const Get& get, const Vector<Floats>& points) -> Floats {
+    const auto vector = [&](std::size_t column) -> Vector<Floats> {
         return {get(column), get(column + 1), get(column + 2)};
     };
-    const auto squared = [](const Numbers& a, const Numbers& b) { return a * a + b * b; };
-    const auto clamped = [](const Numbers& a) { return least(Numbers(1.0f), greatest(Numbers(0.0f), a)); };
-    const Numbers zero(0.0f), length = get(kLength), top_u = get(kTopU), top_v = get(kTopV), base = top_u - length;
+    const auto squared = [](const Floats& a, const Floats& b) { return a * a + b * b; };
+    const auto clamped = [](const Floats& a) { return least(Floats(1.0f), greatest(Floats(0.0f), a)); };
+    const Floats zero(0.0f), length = get(kLength), top_u = get(kTopU), top_v = get(kTopV), base = top_u - length;
     const auto from_corner = minus(points, vector(kCornerA));
-    const Numbers u = dot(from_corner, vector(kAxisU)), v = dot(from_corner, vector(kAxisV)),
-                  h = dot(from_corner, vector(kAxisH)), beyond = u - length, rise = v * top_v;
+    const Floats u = dot(from_corner, vector(kAxisU)), v = dot(from_corner, vector(kAxisV)),
+                 h = dot(from_corner, vector(kAxisH)), beyond = u - length, rise = v * top_v;
     // t and s: how far along the right and the left side, from 0 at the bottom to 1 at the top, the nearest point is.
-    const Numbers t = clamped((beyond * base + rise) * get(kPerRight)), s = clamped((u * top_u + rise) * get(kPerLeft));
-    const Numbers bottom = squared(u - least(length, greatest(zero, u)), v),
-                  right = squared(beyond - t * base, v - t * top_v), left = squared(u - s * top_u, v - s * top_v);
+    const Floats t = clamped((beyond * base + rise) * get(kPerRight)), s = clamped((u * top_u + rise) * get(kPerLeft));
+    const Floats bottom = squared(u - least(length, greatest(zero, u)), v),
+                 right = squared(beyond - t * base, v - t * top_v), left = squared(u - s * top_u, v - s * top_v);
     const auto inside = (zero <= v) & (beyond * top_v <= v * base) & (v * top_u <= u * top_v);
     return h * h + choose(inside, zero, least(bottom, least(right, left)));
 }

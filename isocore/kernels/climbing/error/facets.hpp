@@ -39,7 +39,6 @@ class Facets {
                            float* out) const;
 
   private:
-    using Numbers = Lanes<float>;
     // What is stored of each triangle, by column. Corners and axes are three columns each, x, y and z.
     enum Column : std::size_t {
         kCornerA = 0,
@@ -56,21 +55,21 @@ class Facets {
         kColumns = 23
     };
 
-    Numbers in_lanes(std::size_t column, std::size_t first) const { return Numbers(columns_[column].data() + first); }
+    Floats in_lanes(std::size_t column, std::size_t first) const { return Floats(columns_[column].data() + first); }
     void find_frames(std::size_t first);
-    Numbers from_points(std::size_t first, std::size_t count, const Vector<Numbers>& points) const;
-    float from_point(std::size_t first, std::size_t count, const Vector<Numbers>& point) const;
+    Floats from_points(std::size_t first, std::size_t count, const Vector<Floats>& points) const;
+    float from_point(std::size_t first, std::size_t count, const Vector<Floats>& point) const;
     template <class Get>
-    static Numbers squared_distances(const Get& get, const Vector<Numbers>& points);
+    static Floats squared_distances(const Get& get, const Vector<Floats>& points);
 
     std::size_t size_ = 0;
-    std::array<std::array<float, kRoom + kLanes<float>>, kColumns> columns_;  // by column, then by triangle
+    std::array<std::array<float, kRoom + kLanes>, kColumns> columns_;  // by column, then by triangle
 };
 
 // Inline, as it is called for every triangle.
 inline void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
-    if (size_ % kLanes<float> == 0) {  // no lane of a register may be uninitialised
-        for (std::size_t n = 0; n < 9; ++n) Numbers(0.0f).store(columns_[kCornerA + n].data() + size_);
+    if (size_ % kLanes == 0) {  // no lane of a register may be uninitialised
+        for (std::size_t n = 0; n < 9; ++n) Floats(0.0f).store(columns_[kCornerA + n].data() + size_);
     }
     const std::array<const Spot*, 3> corners{&a, &b, &c};
     for (std::size_t n = 0; n < 9; ++n) columns_[kCornerA + n][size_] = (*corners[n / 3])[n % 3];

@@ -24,7 +24,7 @@ Ruler::Ruler(const SampleReader& samples, const Options& options)
 
 void Ruler::place(const Dims& origin, const BoxEdges& edges) {
     std::size_t placed = 0;
-    const auto store = [&](const Vector<Numbers>& places, std::size_t at) {
+    const auto store = [&](const Vector<Floats>& places, std::size_t at) {
         for (std::size_t a = 0; a < 3; ++a) {
             places[a].store(voxels_.places[a].data() + at);
             if (world_) (places[a] * stretch_[a]).store(world_->places[a].data() + at);
@@ -33,7 +33,7 @@ void Ruler::place(const Dims& origin, const BoxEdges& edges) {
     const auto place_added = [&] {
         const std::size_t start = placed;
         spotter_.visit(origin, kNoStretch,
-                       [&](const Vector<Numbers>& places, const Numbers&, std::size_t first, std::size_t count) {
+                       [&](const Vector<Floats>& places, const Floats&, std::size_t first, std::size_t count) {
                            store(places, start + first);
                            placed += count;
                        });
@@ -78,8 +78,8 @@ void Ruler::measure(Measured& measured, Bar* bar) {
         triangle += box.triangles;
         crossing += box.crossings;
     }
-    for (std::size_t n = 0; n < crossing; n += kLanes<float>) {
-        const Numbers squared = first_lanes(Numbers(squared_.data() + n), std::min(kLanes<float>, crossing - n), 0.0f);
+    for (std::size_t n = 0; n < crossing; n += kLanes) {
+        const Floats squared = first_lanes(Floats(squared_.data() + n), std::min(kLanes, crossing - n), 0.0f);
         tally.add(root(squared), squared);
     }
     facets.clear();

@@ -42,8 +42,7 @@ class Ruler {
     void take(Bar& bar);
 
   private:
-    using Numbers = Lanes<float>;
-    using PerCrossing = std::array<float, BoxEdges::kMostEdges + kLanes<float>>;
+    using PerCrossing = std::array<float, BoxEdges::kMostEdges + kLanes>;
     static constexpr std::size_t kPlacedAtOnce = 256;  // crossings
 
     struct WaitingBox {

@@ -8,11 +8,10 @@
 namespace isocore::climbing {
 namespace {
 
-using Numbers = Lanes<float>;
 constexpr float kIllegal = 1e30f;  // larger than any area, and so small that the sum of a few is finite
 
 // Twice the areas of triangles.
-Numbers double_areas(const Vector<Numbers>& a, const Vector<Numbers>& b, const Vector<Numbers>& c) {
+Floats double_areas(const Vector<Floats>& a, const Vector<Floats>& b, const Vector<Floats>& c) {
     const auto normals = cross(minus(b, a), minus(c, a));
     return root(dot(normals, normals));
 }
@@ -22,7 +21,7 @@ Numbers double_areas(const Vector<Numbers>& a, const Vector<Numbers>& b, const V
 void Polygon::make_room(std::size_t size) {
     const std::size_t room = size + size / 4;  // no more than that: memory grows with the square of it
     corners_.resize(room);
-    stride_ = room + kLanes<float>;
+    stride_ = room + kLanes;
     for (auto& axis : places_) axis.assign(stride_, 0);
     area_.assign(stride_ * stride_, 0);
     apex_.resize(stride_ * stride_);
@@ -31,12 +30,12 @@ void Polygon::make_room(std::size_t size) {
 }
 
 // The places of corner `first` and of those that follow it, one in each lane.
-Vector<Numbers> Polygon::places(std::size_t first) const {
-    return {Numbers(places_[0].data() + first), Numbers(places_[1].data() + first), Numbers(places_[2].data() + first)};
+Vector<Floats> Polygon::places(std::size_t first) const {
+    return {Floats(places_[0].data() + first), Floats(places_[1].data() + first), Floats(places_[2].data() + first)};
 }
 
-Vector<Numbers> Polygon::in_all_lanes(std::size_t n) const {
-    return {Numbers(places_[0][n]), Numbers(places_[1][n]), Numbers(places_[2][n])};
+Vector<Floats> Polygon::in_all_lanes(std::size_t n) const {
+    return {Floats(places_[0][n]), Floats(places_[1][n]), Floats(places_[2][n])};
 }
 
 std::span<const Polygon::Triangle> Polygon::triangulate() {
@@ -60,9 +59,9 @@ void Polygon::note(std::size_t i, std::size_t j, float area, std::size_t apex) {
 // Solves the parts of two and of three corners: nothing, and one triangle (an ear).
 void Polygon::cut_ears() {
     for (std::size_t i = 0; i + 1 < size_; ++i) area_[i * stride_ + i + 1] = area_[(i + 1) * stride_ + i] = 0;
-    for (std::size_t first = 0; first + 2 < size_; first += kLanes<float>) {
+    for (std::size_t first = 0; first + 2 < size_; first += kLanes) {
         const auto found = double_areas(places(first), places(first + 1), places(first + 2)).each();
-        for (std::size_t i = first; i < std::min(first + kLanes<float>, size_ - 2); ++i)
+        for (std::size_t i = first; i < std::min(first + kLanes, size_ - 2); ++i)
             note(i, i + 2, found[i - first], i + 1);
     }
 }
@@ -73,11 +72,11 @@ void Polygon::find_apex(std::size_t i, std::size_t j) {
     const auto from = in_all_lanes(i), to = in_all_lanes(j);
     float best = std::numeric_limits<float>::infinity();
     std::size_t apex = i + 1;
-    for (std::size_t k = i + 1; k < j; k += kLanes<float>) {
-        const Numbers area = Numbers(area_.data() + i * stride_ + k) + Numbers(area_.data() + j * stride_ + k) +
-                             double_areas(from, places(k), to);
+    for (std::size_t k = i + 1; k < j; k += kLanes) {
+        const Floats area = Floats(area_.data() + i * stride_ + k) + Floats(area_.data() + j * stride_ + k) +
+                            double_areas(from, places(k), to);
         const float least = tagged(first_lanes(area, j - k, kIllegal)).least_lane();
-        if (least < best) apex = k + std::bit_cast<std::uint32_t>(least) % kLanes<float>;
+        if (least < best) apex = k + std::bit_cast<std::uint32_t>(least) % kLanes;
         best = std::min(best, least);
     }
     note(i, j, best, apex);

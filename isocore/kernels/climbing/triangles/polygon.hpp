@@ -36,7 +36,6 @@ class Polygon {
     std::span<const Triangle> triangulate();
 
   private:
-    using Numbers = Lanes<float>;
     struct Corner {
         unsigned faces;
         std::int32_t vertex;
@@ -44,8 +43,8 @@ class Polygon {
 
     void make_room(std::size_t size);
     bool may_join(std::size_t i, std::size_t j) const { return !(corners_[i].faces & corners_[j].faces); }
-    Vector<Numbers> places(std::size_t first) const;
-    Vector<Numbers> in_all_lanes(std::size_t n) const;
+    Vector<Floats> places(std::size_t first) const;
+    Vector<Floats> in_all_lanes(std::size_t n) const;
     void cut_ears();
     void find_apex(std::size_t i, std::size_t j);
     void note(std::size_t i, std::size_t j, float area, std::size_t apex);

@@ -20,7 +20,7 @@ inline constexpr std::size_t kLongestOfSeveral = 8;
 template <std::size_t length>
 class Polygons {
   public:
-    static constexpr std::size_t kCount = kLanes<float>;   // loops at once
+    static constexpr std::size_t kCount = kLanes;          // loops at once
     static constexpr std::size_t kTriangles = length - 2;  // of each loop
     using Triangle = LoopTriangle;
 
@@ -41,12 +41,11 @@ class Polygons {
     std::array<Triangle, kTriangles> triangles(std::size_t n) const;
 
   private:
-    using Numbers = Lanes<float>;
     using PerLoop = std::array<float, kCount>;
 
-    Vector<Numbers> places(std::size_t corner) const {
+    Vector<Floats> places(std::size_t corner) const {
         const Vector<PerLoop>& at = places_[corner];
-        return {Numbers(at[0].data()), Numbers(at[1].data()), Numbers(at[2].data())};
+        return {Floats(at[0].data()), Floats(at[1].data()), Floats(at[2].data())};
     }
 
     std::array<Vector<PerLoop>, length> places_{};  // by corner
