@@ -97,8 +97,9 @@ def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) ->
 def _volume_table(volume: Volume, threads: int, chosen: dict[str, Any]) -> Table:
     from isocore.benches.climbing import render_csv, render_markdown, volume_bench
     from isocore.benches.climbing_plot import render_svg
+    from isocore.choices import parse_choices
     from isocore.histogram import histogram
-    from isocore.isovalue import choose, parse_choices
+    from isocore.isovalue import choose
     from isocore.whole_file import whole_file
 
     asked = parse_choices((chosen["isovalue"],) if chosen["isovalue"] else ())

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 import click
 
 if TYPE_CHECKING:
-    from isocore.pipeline import Job
+    from isocore.job import Job
     from isocore.report import BatchReport, RunReport
 
 #: A run shorter than this shows no progress bar.

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import PATH, Jobs, MaxError, Memory, at_once, default_threads, read_options, reading_options
+from isocore.choices import BLOCK_SIZES, FORMATS, TOPOLOGIES, distinct
+
+from .options import PATH, Isovalue, Jobs, MaxError, Memory, at_once, default_threads, read_options, reading_options
 
 if TYPE_CHECKING:
-    from isocore.pipeline import Job
+    from isocore.job import Job
     from isocore.report import BatchReport
 
-FORMATS = ("ply", "obj", "stl")
 REQUIREMENTS = ("watertight", "manifold", "nonempty")
 
 
@@ -24,16 +25,16 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 @click.argument("inputs", nargs=-1, type=PATH, metavar="INPUT...")
 @click.option("--files-from", type=PATH, metavar="FILE|-", help="Read further inputs from a file, one a line.")
 @click.option(
-    "-i", "--isovalue", "isovalues", multiple=True, metavar="V", help="A number, otsu, pNN, A:B:N; repeatable."
+    "-i", "--isovalue", "isovalues", multiple=True, type=Isovalue(), help="A number, otsu, pNN, A:B:N; repeatable."
 )
 @click.option("-o", "--output", type=PATH, metavar="FILE", help="For one input and one isovalue; - is stdout.")
 @click.option("-d", "--output-dir", type=PATH, metavar="DIR", help="For many; mirrors the input tree.")
 @click.option("-f", "--format", type=click.Choice(FORMATS), help="Default ply, or the suffix of -o.")
 @click.option("--name", metavar="TEMPLATE", help="Default {stem}; also {name} {isovalue} {relpath} {backend} {volume}.")
 @click.option("-b", "--backend", metavar="NAME", help="The method; default by kind of input.")
-@click.option("--block-size", type=click.Choice(["1", "2", "4", "8", "16", "32"]), help="asc: cells per block.")
+@click.option("--block-size", type=click.Choice([str(size) for size in BLOCK_SIZES]), help="asc: cells per block.")
 @click.option("--max-error", type=MaxError(), help="asc: in voxels (0.5), world units (0.3mm) or none.")
-@click.option("--topology", type=click.Choice(["faces", "trilinear"]), help="mc: disks in a cell, or tubes too.")
+@click.option("--topology", type=click.Choice(TOPOLOGIES), help="mc: disks in a cell, or tubes too.")
 @click.option(
     "--space", type=click.Choice(["ras", "lps", "las", "native", "index"]), default="native", show_default=True
 )
@@ -105,11 +106,10 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
             if chosen[option]:
                 raise click.UsageError(f"-o -: does not go with --{option.removeprefix('as_')}; use -o FILE")
 
-    from isocore.backends import BACKENDS, Options, check_options
+    from isocore.backends import BACKENDS, check_options
     from isocore.batches.plan import Naming, check_template, find_inputs, plan
     from isocore.errors import OptionError
-    from isocore.isovalue import parse_choices
-    from isocore.pipeline import Job
+    from isocore.job import Job, Options
     from isocore.report import renderer_for
 
     options = Options(
@@ -144,7 +144,8 @@ def planned_jobs(chosen: dict[str, Any]) -> list[Job]:
         ambiguities=chosen["ambiguities"],
     )
     naming = Naming(output=chosen["output"], output_dir=chosen["output_dir"], template=chosen["name"])
-    jobs = plan(find_inputs(names), parse_choices(chosen["isovalues"]), pattern, naming, volumes=chosen["volume"])
+    choices = distinct(choice for asked in chosen["isovalues"] for choice in asked)
+    jobs = plan(find_inputs(names), choices, pattern, naming, volumes=chosen["volume"])
     if chosen["ambiguities"] and (len(jobs) != 1 or len(jobs[0].targets) != 1):
         raise click.UsageError(f"--ambiguities {chosen['ambiguities']}: is one file; give one input and one isovalue")
     threads = chosen["threads"] or max(1, default_threads() // min(at_once(chosen), len(jobs)))

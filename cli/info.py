@@ -55,7 +55,7 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, **chose
 def _record(path: Path, found: Description) -> dict[str, Any]:
     from isocore.report.record import plain
 
-    isovalues = [{"isovalue": choice.isovalue, "option": choice.asked, "why": choice.why} for choice in found.isovalues]
+    isovalues = [{"isovalue": one.isovalue, "option": str(one.asked), "why": one.why} for one in found.isovalues]
     record = {"source": str(path), **found.facts, "histogram": found.spread.coarse(), "isovalues": isovalues}
     plain_record: dict[str, Any] = plain(record)
     return plain_record
@@ -67,7 +67,7 @@ def _lines(path: Path, found: Description) -> list[str]:
     lines += [f"  {'warning':<12} {warning}" for warning in found.facts["warnings"]]
     lines += drawn(found.spread.coarse(_WIDTH))
     for choice in found.isovalues:
-        lines.append(f"  {'isovalue':<12} {choice.isovalue:<12.6g} -i {choice.asked:<6} {choice.why}")
+        lines.append(f"  {'isovalue':<12} {choice.isovalue:<12.6g} -i {choice.asked!s:<6} {choice.why}")
     if not found.isovalues:
         lines.append(f"  {'isovalue':<12} none: the samples do not differ")
     return lines

@@ -10,6 +10,9 @@ from typing import Any, TypeVar
 
 import click
 
+from isocore import choices
+from isocore.errors import OptionError
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 
@@ -38,17 +41,24 @@ class MaxError(click.ParamType):
 
     name = "E"
 
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> str:
-        """Check the form; what it means is the backend's business."""
-        text = str(value).strip().lower()
-        match = re.fullmatch(r"(?P<number>.+?)(mm)?", text)
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> choices.MaxError:
+        """The bound; whether a volume knows its unit is the backend's business."""
         try:
-            number = 0.0 if text == "none" else float(match["number"]) if match else -1.0
-        except ValueError:
-            number = -1.0
-        if not 0 <= number < float("inf"):
+            return choices.parse_max_error(str(value).lower())
+        except OptionError:
             self.fail(f"{value}: needs voxels (0.5), world units (0.3mm) or none", parameter, context)
-        return text
+
+
+class Isovalue(click.ParamType):
+    """A number, otsu, pNN or auto; A:B:N are several."""
+
+    name = "V"
+
+    def convert(
+        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
+    ) -> tuple[choices.Choice, ...]:
+        """The choices, one per surface."""
+        return choices.spread(str(value))
 
 
 class VolumeChoice(click.ParamType):

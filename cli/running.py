@@ -10,8 +10,8 @@ from typing import Any
 
 from isocore.batches.depfile import depfile_text
 from isocore.batches.run import Batch, run_jobs
+from isocore.job import Job
 from isocore.memory import free_bytes
-from isocore.pipeline import Job
 from isocore.report import BatchReport, RunReport, github_annotations, save_report
 from isocore.whole_file import whole_file
 

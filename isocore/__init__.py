@@ -13,11 +13,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from isocore.backends import BACKENDS, Backend, Extraction, Options, extract
+    from isocore.backends import BACKENDS, Backend, Extraction, extract
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError, InputError, IsocoreError, OptionError, OutputError
+    from isocore.job import Job, Options, Target
     from isocore.measurements import Measurements, measure
-    from isocore.pipeline import Job, Target, convert
+    from isocore.pipeline import convert
     from isocore.readers import ReadOptions, read
     from isocore.report import BatchReport, RunReport
     from isocore.surface import Surface
@@ -53,11 +54,12 @@ __all__ = [
 ]
 
 _HOMES = {
-    "backends": ("BACKENDS", "Backend", "Extraction", "Options", "extract"),
+    "backends": ("BACKENDS", "Backend", "Extraction", "extract"),
     "cell_mesh": ("CellMesh",),
     "errors": ("FieldError", "InputError", "IsocoreError", "OptionError", "OutputError"),
+    "job": ("Job", "Options", "Target"),
     "measurements": ("Measurements", "measure"),
-    "pipeline": ("Job", "Target", "convert"),
+    "pipeline": ("convert",),
     "readers": ("ReadOptions", "read"),
     "report": ("BatchReport", "RunReport"),
     "surface": ("Surface",),

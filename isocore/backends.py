@@ -1,6 +1,6 @@
 """The table of backends: how a field becomes a surface.
 
-A backend is a row. ``prepare(field, options)`` is where a method pays once per field and returns
+A backend is a row. ``prepare(field, options, outlook)`` is where a method pays once per field and returns
 ``extract(isovalue)``, where it pays per isovalue. To add one: a kernel folder with a glossary, its bindings, a file in
 methods/, one row below; the contract tests find it by themselves.
 """
@@ -13,14 +13,27 @@ from typing import Any
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Field, Options
+from isocore.extraction import Extract, Extraction, Field, Outlook
+from isocore.job import Options
 from isocore.methods.climbing import prepare_climbing
 from isocore.methods.marching_cubes import prepare_marching_cubes
 from isocore.methods.thinning import prepare_thinning
 from isocore.surface import Surface
 from isocore.volume import Volume
 
-__all__ = ["BACKENDS", "Backend", "Extract", "Extraction", "Field", "Options", "default_backend", "extract", "prepare"]
+__all__ = [
+    "BACKENDS",
+    "Backend",
+    "Extract",
+    "Extraction",
+    "Field",
+    "Options",
+    "Outlook",
+    "check_options",
+    "default_backend",
+    "extract",
+    "prepare",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +43,7 @@ class Backend:
     name: str
     title: str
     accepts: tuple[type, ...]
-    prepare: Callable[[Any, Options], Extract]
+    prepare: Callable[[Any, Options, Outlook], Extract]
     options: frozenset[str] = frozenset()
     cites: str = ""
 
@@ -70,8 +83,8 @@ def default_backend(field_type: type) -> str:
     return next(name for name, backend in BACKENDS.items() if field_type in backend.accepts)
 
 
-def prepare(field: Field, backend: str, options: Options) -> Extract:
-    """Prepare `field` for extraction by the backend of that name.
+def prepare(field: Field, backend: str, options: Options, outlook: Outlook | None = None) -> Extract:
+    """Prepare `field` for extraction by the backend of that name; outlook: what is to come, where that is known.
 
     Raises OptionError for an unknown name, a field it does not take, or an option it does not understand.
     """
@@ -83,7 +96,7 @@ def prepare(field: Field, backend: str, options: Options) -> Extract:
         able = [name for name, other in BACKENDS.items() if isinstance(field, other.accepts)]
         raise OptionError(f"{backend}: does not take {kind}; choose one of {', '.join(able)}")
     check_options(backend, options)
-    return row.prepare(field, options)
+    return row.prepare(field, options, outlook or Outlook())
 
 
 def extract(field: Field, isovalue: float, *, backend: str | None = None, options: Options | None = None) -> Surface:
@@ -93,8 +106,7 @@ def extract(field: Field, isovalue: float, *, backend: str | None = None, option
 
 def check_options(backend: str, options: Options) -> None:
     """Refuse an option that the backend does not understand, rather than ignore it."""
-    common = {"threads", "cap", "normals", "isovalues", "index"}
+    of_others = frozenset().union(*(row.options for row in BACKENDS.values())) - BACKENDS[backend].options
     for option in fields(Options):
-        given = getattr(options, option.name) is not None
-        if option.name not in common and given and option.name not in BACKENDS[backend].options:
+        if option.name in of_others and getattr(options, option.name) is not None:
             raise OptionError(f"--{option.name.replace('_', '-')}: is not an option of {backend}; leave it out")

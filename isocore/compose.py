@@ -5,16 +5,15 @@ from __future__ import annotations
 from dataclasses import asdict, fields, replace
 from typing import Any
 
-from isocore.backends import Extraction, Field, Options
+from isocore.backends import Extraction, Field
 from isocore.histogram import Histogram
 from isocore.isovalue import Chosen
+from isocore.job import Options
 from isocore.measurements import Measurements
 from isocore.report.record import RunReport
 from isocore.volume import Volume
 
 REQUIREMENTS = ("watertight", "manifold", "nonempty")
-#: What the pipeline tells a backend besides what was asked for.
-_NO_OPTIONS = ("isovalues", "index")
 #: Facts of a backend that have a key of their own in the record.
 _NAMED_FACTS = ("error", "search", "ambiguous", "climbing")
 
@@ -70,7 +69,9 @@ def _border_warning(measured: Measurements, kind: str) -> tuple[str, ...]:
 
 def options_part(options: Options, **others: Any) -> dict[str, Any]:
     """The options that were given, without those left to the backend."""
-    given = {item.name: getattr(options, item.name) for item in fields(Options) if item.name not in _NO_OPTIONS}
+    given = {item.name: getattr(options, item.name) for item in fields(Options)}
+    if options.max_error is not None:
+        given["max_error"] = str(options.max_error)
     return {key: value for key, value in (given | others).items() if value is not None}
 
 

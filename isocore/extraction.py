@@ -1,4 +1,4 @@
-"""What is asked of a backend, and what it gives back."""
+"""What a method is told beside its options, and what it gives back."""
 
 from __future__ import annotations
 
@@ -15,27 +15,15 @@ Field = Volume | CellMesh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options:
-    """What a user may ask of an extraction. A backend lists those it understands beyond the first five.
+class Outlook:
+    """What is known when a method prepares, besides what was asked. It decides advice and what is worth preparing.
 
-    threads: at least 1. Results do not depend on it.
-    cap: close the surface at the volume's border.
-    normals: compute vertex normals.
-    isovalues: how many will be asked for, 0 where that is not known; decides advice and what is worth preparing, not
-        results.
-    index: the thinning index of a mesh, used where it matches.
-    topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
-        trilinear function does.
+    isovalues: how many will be asked for, 0 where that is not known.
+    index: the thinning index that lies beside a mesh, used where it matches.
     """
 
-    threads: int = 1
-    cap: bool = False
-    normals: bool = False
     isovalues: int = 0
     index: Path | None = None
-    block_size: int | None = None
-    max_error: str | None = None
-    topology: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

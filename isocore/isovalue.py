@@ -1,90 +1,47 @@
 """How an isovalue is chosen, and why.
 
-A choice is asked for as text: a number, ``otsu``, ``pNN`` (percentile), ``A:B:N`` (N numbers from A to B), or
-nothing (``auto``). Otsu's threshold follows N. Otsu, "A Threshold Selection Method from Gray-Level Histograms",
-IEEE Trans. Systems, Man, and Cybernetics 9(1), 1979: the cut that maximises the variance between the two classes.
+choices.py says how one is asked for. Otsu's threshold follows N. Otsu, "A Threshold Selection Method from Gray-Level
+Histograms", IEEE Trans. Systems, Man, and Cybernetics 9(1), 1979: the cut that maximises the variance between the two
+classes.
 """
 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
-from isocore.errors import FieldError, OptionError
+from isocore.choices import Auto, Choice, Number, Otsu, Percentile
+from isocore.errors import FieldError
 from isocore.histogram import Histogram
-
-AUTO = "auto"
-_MOST_OF_A_RANGE = 10_000
-_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):(?P<count>\d+)")
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
     """An isovalue: how it was asked for, the number, and how that came about."""
 
-    asked: str
+    asked: Choice
     isovalue: float
     why: str
 
 
-def parse_choices(texts: tuple[str, ...]) -> tuple[str, ...]:
-    """Check what a user asked for and spread ranges: one choice per surface, no two alike."""
-    choices: list[str] = []
-    for text in texts or (AUTO,):
-        for choice in _spread(text.strip()):
-            if choice not in choices:
-                choices.append(choice)
-    return tuple(choices)
-
-
-def _spread(text: str) -> list[str]:
-    if text.lower() in (AUTO, "otsu"):
-        return [text.lower()]
-    if re.fullmatch(r"[pP][\d.]+", text):
-        if not 0 <= _number(text, text[1:]) <= 100:
-            raise OptionError(f"isovalue {text}: a percentile lies between p0 and p100")
-        return [text.lower()]
-    if match := _RANGE.fullmatch(text):
-        first, last = _number(text, match["first"]), _number(text, match["last"])
-        count = int(match["count"])
-        if not 1 <= count <= _MOST_OF_A_RANGE:
-            raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
-        return [f"{value:.9g}" for value in np.linspace(first, last, count).tolist()]
-    _number(text, text)
-    return [text]
-
-
-def _number(text: str, part: str) -> float:
-    try:
-        value = float(part)
-    except ValueError:
-        raise OptionError(f"isovalue {text}: is not a number, otsu, pNN or A:B:N") from None
-    if not math.isfinite(value):
-        raise OptionError(f"isovalue {text}: must be finite")
-    return value
-
-
-def choose(choice: str, histogram: Histogram) -> Chosen:
+def choose(choice: Choice, histogram: Histogram) -> Chosen:
     """The number behind a choice, for these samples. Raises FieldError where the samples offer none."""
-    if re.fullmatch(r"p[\d.]+", choice):
-        _needs_two_values(histogram)
-        value = histogram.scaled(percentile(histogram, float(choice[1:])))
-        return Chosen(choice, value, f"percentile {choice[1:]} of the finite samples")
-    if choice == "otsu":
-        _needs_two_values(histogram)
+    if isinstance(choice, Number):
+        return Chosen(choice, choice.value, "given")
+    _needs_two_values(histogram)
+    if isinstance(choice, Percentile):
+        value = histogram.scaled(percentile(histogram, choice.percent))
+        return Chosen(choice, value, f"percentile {choice.text[1:]} of the finite samples")
+    if isinstance(choice, Otsu):
         return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold")
-    if choice == AUTO:
-        _needs_two_values(histogram)
-        if is_two_valued(histogram):
-            low, high = histogram.range or (0.0, 0.0)
-            return Chosen(choice, (low + high) / 2, f"midpoint of the two values {low:g} and {high:g}")
-        return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold, since none was given")
-    return Chosen(choice, float(choice), "given")
+    if is_two_valued(histogram):
+        low, high = histogram.range or (0.0, 0.0)
+        return Chosen(choice, (low + high) / 2, f"midpoint of the two values {low:g} and {high:g}")
+    return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold, since none was given")
 
 
 def _needs_two_values(histogram: Histogram) -> None:
@@ -161,9 +118,9 @@ def suggestions(histogram: Histogram) -> tuple[Chosen, ...]:
     """Isovalues worth trying, the automatic one first; none where all samples are alike."""
     if not histogram.finite or histogram.minimum == histogram.maximum:
         return ()
-    first = choose(AUTO, histogram)
+    first = choose(Auto(), histogram)
     if is_two_valued(histogram):
         return (first,)
-    others = [choose(choice, histogram) for choice in ("p50", "p90", "p99")]
+    others = [choose(Percentile(percent, f"p{percent}"), histogram) for percent in (50, 90, 99)]
     low = (histogram.range or (0.0, 0.0))[0]
-    return (first, *(choice for choice in others if choice.isovalue > low))
+    return (first, *(other for other in others if other.isovalue > low))

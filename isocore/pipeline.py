@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
@@ -13,18 +13,18 @@ from typing import Any, BinaryIO, ParamSpec, TypeVar, cast
 
 from isocore import compose
 from isocore.ambiguities import find_ambiguities
-from isocore.backends import BACKENDS, Extract, Field, Options, default_backend, prepare
+from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
 from isocore.errors import FieldError, IsocoreError, OptionError, writing
 from isocore.histogram import histogram
 from isocore.isovalue import choose
+from isocore.job import STDOUT, Job, Options, Target
 from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.readers import read
-from isocore.readers.options import ReadOptions
 from isocore.report.record import RunReport
 from isocore.surface import Surface
-from isocore.volume import Space, Volume
+from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import writer_for
 from isocore.writers.ply import write_ply_points
@@ -33,45 +33,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 REFERENCE = "mc"
-#: The target that is not a file.
-STDOUT = Path("-")
 STAGES = ("read", "prepare", "extract", "measure", "write")
-
-
-@dataclass(frozen=True, slots=True)
-class Target:
-    """One surface of a job: a choice of isovalue (isovalue.py) and where the surface goes; `-` is stdout."""
-
-    choice: str
-    output: Path
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
-    """What was asked of one file.
-
-    format: of the outputs, "ply", "obj" or "stl".
-    backend: by name, or None for the default of the field.
-    space: of the outputs, "native" for the file's own.
-    ambiguities: where the ambiguous faces go, for a job of one target.
-    require: names out of compose.REQUIREMENTS; max_triangles: a further one.
-    if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those.
-    Both are the batch's business.
-    """
-
-    source: Path
-    targets: tuple[Target, ...]
-    format: str = "ply"
-    backend: str | None = None
-    options: Options = field(default_factory=Options)
-    read_options: ReadOptions = field(default_factory=ReadOptions)
-    space: Space = "native"
-    reference: bool = True
-    require: tuple[str, ...] = ()
-    max_triangles: int | None = None
-    ambiguities: Path | None = None
-    if_changed: bool = False
-    force: bool = False
 
 
 class Timer:
@@ -103,7 +65,7 @@ def convert(job: Job) -> Iterator[RunReport]:
         source = timer.timed("read", _read, job)
         spread = timer.timed("read", histogram, source, threads=job.options.threads)
         backend = job.backend or default_backend(type(source))
-        extract = timer.timed("prepare", prepare, source, backend, _options(job))
+        extract = timer.timed("prepare", prepare, source, backend, job.options, _outlook(job))
         reference = _Reference(source, backend, job)
         known = compose.field_parts(source, spread) | {"backend": backend}
         for target in job.targets:
@@ -134,10 +96,9 @@ def convert(job: Job) -> Iterator[RunReport]:
             yield failed(job, target, error, seconds=timer.taken())
 
 
-def _options(job: Job) -> Options:
-    """What the job asks of the backend, and what only the job knows."""
+def _outlook(job: Job) -> Outlook:
     index = index_path(job.source)
-    return replace(job.options, isovalues=len(job.targets), index=index if index.is_file() else None)
+    return Outlook(isovalues=len(job.targets), index=index if index.is_file() else None)
 
 
 def failed(job: Job, target: Target, error: BaseException, *, seconds: dict[str, float]) -> RunReport:
@@ -153,7 +114,7 @@ def _asked(job: Job, target: Target) -> dict[str, Any]:
     return {
         "source": str(job.source),
         "output": str(target.output),
-        "asked": target.choice,
+        "asked": str(target.choice),
         "volume": job.read_options.volume,
         "options": compose.options_part(job.options, format=job.format, space=job.space),
     }

@@ -15,7 +15,7 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measurements"}
+NOUNS = {"volume", "cell_mesh", "surface", "errors", "extraction", "measurements", "choices"}
 KERNELS = {"_kernels", "_kernels_base", "_kernels_v3"}
 FIELD_ROOMS = {"histogram", "isovalue", "extrema"}
 #: Rooms that only the command line uses.
@@ -25,13 +25,15 @@ ABOVE_BACKENDS = FOR_THE_CLI | {"pipeline", "compose", "readers", "writers", "re
 #: room -> rooms it may import. A room is the first part of a module's name below isocore.
 MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
+    "choices": {"errors"},
+    "job": {"choices", "readers", "volume"},
     **dict.fromkeys(("volume", "cell_mesh", "surface", "extraction", "measurements"), NOUNS | KERNELS),
     "readers": NOUNS | KERNELS,
-    "writers": {"surface", "errors", "whole_file"} | KERNELS,
+    "writers": {"surface", "errors", "whole_file", "choices"} | KERNELS,
     "whole_file": {"errors"},
     "report": {"surface", "errors", "whole_file"} | KERNELS,
-    "methods": NOUNS | KERNELS | {"whole_file"},
-    "backends": NOUNS | {"methods"},
+    "methods": NOUNS | KERNELS | {"job", "whole_file"},
+    "backends": NOUNS | {"job", "methods"},
     "benches": NOUNS | KERNELS | {"methods"},
     **dict.fromkeys(FIELD_ROOMS, NOUNS | KERNELS | FIELD_ROOMS),
 }

@@ -11,7 +11,8 @@ import pytest
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError
-from isocore.extraction import Options
+from isocore.extraction import Outlook
+from isocore.job import Options
 from isocore.methods.index_file import index_path, load_index, save_index
 from isocore.methods.thinning import build_index, prepare_thinning, ready_index
 
@@ -97,8 +98,8 @@ def test_a_damaged_index_is_refused(path: Path, mesh: CellMesh, damage: str) -> 
 
 def test_convert_uses_a_matching_index_and_says_when_it_does_not(path: Path, mesh: CellMesh) -> None:
     """With it a single isovalue repays; a changed mesh is thinned anew, with a warning."""
-    options = Options(index=path, isovalues=1)
-    assert prepare_thinning(mesh, options)(0.3).warnings == ()
+    outlook = Outlook(index=path, isovalues=1)
+    assert prepare_thinning(mesh, Options(), outlook)(0.3).warnings == ()
     changed = meshes.with_values(mesh, mesh.values * 2)
-    warnings = prepare_thinning(changed, options)(0.3).warnings
+    warnings = prepare_thinning(changed, Options(), outlook)(0.3).warnings
     assert any("thinned anew" in warning for warning in warnings)

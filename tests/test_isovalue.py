@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from isocore.choices import Auto, Number, Otsu, Percentile, parse_choice, parse_choices
 from isocore.errors import FieldError, OptionError
 from isocore.histogram import histogram
-from isocore.isovalue import choose, is_two_valued, otsu, parse_choices, percentile
+from isocore.isovalue import choose, is_two_valued, otsu, percentile
 from isocore.volume import Volume
 
 TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"]
@@ -75,7 +76,7 @@ def test_two_values_are_cut_in_the_middle() -> None:
     """Also scaled ones, and floats; three values are none of the kind."""
     for name in TYPES:
         spread = histogram(volume(np.array([3, 7] * 8, name), slope=-2.0, intercept=1.0))
-        assert is_two_valued(spread) and choose("auto", spread).isovalue == -9.0
+        assert is_two_valued(spread) and choose(Auto(), spread).isovalue == -9.0
     assert not is_two_valued(histogram(volume(np.array([0.0, 1.0, 1e-9, 1.0] * 4))))
 
 
@@ -83,20 +84,35 @@ def test_a_constant_volume_offers_no_isovalue() -> None:
     """The message says what every sample is; a given number is taken all the same."""
     spread = histogram(volume(np.full(16, 5, np.uint8)))
     with pytest.raises(FieldError, match="every sample is 5"):
-        choose("auto", spread)
-    assert choose("3.5", spread).isovalue == 3.5
+        choose(Auto(), spread)
+    assert choose(Number(3.5, "3.5"), spread).isovalue == 3.5
 
 
 def test_a_volume_without_a_finite_sample_says_so() -> None:
     """Rather than NaN."""
     with pytest.raises(FieldError, match="no finite sample"):
-        choose("otsu", histogram(volume(np.full(16, np.nan))))
+        choose(Otsu(), histogram(volume(np.full(16, np.nan))))
 
 
 def test_ranges_are_spread_and_doubles_dropped() -> None:
     """A:B:N are N values, both ends included."""
-    assert parse_choices(("0:1:5", "0.5", "OTSU", "p99.5")) == ("0", "0.25", "0.5", "0.75", "1", "otsu", "p99.5")
-    assert parse_choices(()) == ("auto",)
+    found = parse_choices(("0:1:5", "0.5", "OTSU", "p99.5"))
+    assert [str(choice) for choice in found] == ["0", "0.25", "0.5", "0.75", "1", "otsu", "p99.5"]
+    assert found[1:2] + found[-2:] == (Number(0.25, "0.25"), Otsu(), Percentile(99.5, "p99.5"))
+    assert parse_choices(()) == (Auto(),)
+
+
+@pytest.mark.parametrize("text", ["50", "50.0", "1e2", "otsu", "p090.5", "auto"])
+def test_a_choice_prints_back_to_its_text(text: str) -> None:
+    """Reports and names of outputs say what was asked for, in the words in which it was."""
+    assert str(parse_choice(text)) == text
+
+
+def test_a_range_is_no_single_choice() -> None:
+    """Unless it holds one value."""
+    assert parse_choice("1:2:1") == Number(1.0, "1")
+    with pytest.raises(OptionError, match=r"isovalue 1:2:3: is 3 isovalues"):
+        parse_choice("1:2:3")
 
 
 @pytest.mark.parametrize("text", ["nan", "inf", "p-1", "p101", "1:2:0", "1:nan:3", "", "three", "1:2:999999"])

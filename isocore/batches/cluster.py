@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from isocore.batches.leftovers import remove_parts
 from isocore.errors import OptionError, one_line
-from isocore.pipeline import Job, failed
+from isocore.job import Job
+from isocore.pipeline import failed
 from isocore.report.record import RunReport
 
 _CONNECT_SECONDS = "10s"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from isocore.pipeline import STDOUT, Job
+from isocore.job import STDOUT, Job
 from isocore.readers import files_of
 
 

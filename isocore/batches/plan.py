@@ -11,8 +11,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 
+from isocore.choices import Choice
 from isocore.errors import IsocoreError, OptionError
-from isocore.pipeline import STDOUT, Job, Target
+from isocore.job import STDOUT, Job, Target
 from isocore.readers import SEARCHED, count_volumes, files_of, suffix_of
 
 NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "backend", "volume")
@@ -84,7 +85,7 @@ def check_template(template: str) -> None:
 
 
 def plan(
-    inputs: list[Input], choices: tuple[str, ...], pattern: Job, naming: Naming, *, volumes: int | str | None = None
+    inputs: list[Input], choices: tuple[Choice, ...], pattern: Job, naming: Naming, *, volumes: int | str | None = None
 ) -> list[Job]:
     """One job per input, with the settings of `pattern` and a target per choice. Raises OptionError on a clash.
 
@@ -113,12 +114,12 @@ def _per_volume(item: Input, pattern: Job, volumes: int | str | None) -> list[Jo
     return [replace(pattern, read_options=replace(pattern.read_options, volume=k)) for k in range(count)]
 
 
-def _job(item: Input, choices: tuple[str, ...], pattern: Job, naming: Naming) -> Job:
+def _job(item: Input, choices: tuple[Choice, ...], pattern: Job, naming: Naming) -> Job:
     targets = tuple(Target(choice, _output(item, choice, pattern, naming, len(choices) > 1)) for choice in choices)
     return replace(pattern, source=item.path, targets=targets)
 
 
-def _output(item: Input, choice: str, pattern: Job, naming: Naming, several: bool) -> Path:
+def _output(item: Input, choice: Choice, pattern: Job, naming: Naming, several: bool) -> Path:
     if naming.output is not None:
         return naming.output
     volume = pattern.read_options.volume
@@ -126,7 +127,7 @@ def _output(item: Input, choice: str, pattern: Job, naming: Naming, several: boo
     name = template.format(
         stem=item.stem,
         name=item.path.name,
-        isovalue=choice,
+        isovalue=str(choice),
         relpath=(item.relative_folder / item.stem).as_posix(),
         backend=pattern.backend or "auto",
         volume="" if volume is None else volume,

@@ -10,8 +10,9 @@ from isocore import compose
 from isocore.batches import stamps
 from isocore.batches.leftovers import remove_parts
 from isocore.errors import one_line
+from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
-from isocore.pipeline import STDOUT, Job, Target, convert, failed
+from isocore.pipeline import convert, failed
 from isocore.readers import content_bytes
 from isocore.report.record import RunReport
 

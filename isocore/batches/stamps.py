@@ -7,19 +7,20 @@ and the record of the run. An output is up to date when all four hashes hold.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
 from isocore import __version__
-from isocore.pipeline import STDOUT, Job, Target
+from isocore.job import STDOUT, Job, Options, Target
 from isocore.readers import files_of
 from isocore.report.record import RunReport, run_as_dict, run_from_dict
 from isocore.whole_file import whole_file
 
-#: Options that change neither the surface nor the file.
-_HARMLESS = ("threads",)
+#: The first keys of a stamp's options. The last two stopped being options; they stay, so that the stamps of earlier
+#: runs hold.
+_FIRST_KEYS = {"cap": False, "normals": False, "isovalues": 0, "index": None}
 
 
 def stamp_path(output: Path) -> Path:
@@ -40,8 +41,13 @@ def input_hash(source: Path) -> str:
 
 
 def options_hash(job: Job, target: Target) -> str:
-    """Of everything asked of this output that can change it."""
-    options = {key: value for key, value in asdict(job.options).items() if key not in _HARMLESS}
+    """Of what is asked of this output and can change its bytes; threads cannot.
+
+    `job.ambiguities` and `job.reference` are not part of it, though they change what a run leaves beside the output
+    and in its record: asked for later, they alone do not make a run.
+    """
+    options = _FIRST_KEYS | {item.name: getattr(job.options, item.name) for item in fields(Options)}
+    del options["threads"]
     asked = [options, asdict(job.read_options), job.format, job.backend, job.space, target.choice]
     return sha256(json.dumps(asked, default=str).encode()).hexdigest()
 

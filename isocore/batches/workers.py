@@ -16,7 +16,8 @@ from typing import Any, BinaryIO, cast
 
 from isocore.batches.leftovers import remove_parts
 from isocore.batches.worker import receive, send
-from isocore.pipeline import Job, failed
+from isocore.job import Job
+from isocore.pipeline import failed
 from isocore.report.record import RunReport
 
 _END_SECONDS = 5.0

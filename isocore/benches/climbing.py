@@ -15,8 +15,9 @@ from typing import TypeAlias, TypeVar
 
 from isocore import _kernels
 from isocore.benches.thinning import Table
+from isocore.choices import BLOCK_SIZES, parse_max_error
 from isocore.errors import FieldError
-from isocore.methods.climbing import BLOCK_SIZES, DEFAULT_BLOCK_SIZE, Bound, bound_for
+from isocore.methods.climbing import DEFAULT_BLOCK_SIZE, Bound, bound_for
 from isocore.volume import Volume
 
 #: Max, mean and rms, in voxels.
@@ -99,7 +100,8 @@ def volume_bench(
     plans += [(DEFAULT_BLOCK_SIZE, text) for text in max_errors if text != "none"]
     runs = []
     for size, text in plans:
-        seconds, (triangles, error) = _median_of(partial(climb, size, bound_for(volume, text)), repeats)
+        bound = bound_for(volume, parse_max_error(text))
+        seconds, (triangles, error) = _median_of(partial(climb, size, bound), repeats)
         runs.append(Run(size, text, triangles, seconds, error))
     return ClimbingBench(isovalue, mc_triangles, mc_seconds, tuple(runs))
 

@@ -7,24 +7,21 @@ Computer Graphics Forum 17(3), 1998; kernels/climbing/README.md says where ours 
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from isocore import _kernels
+from isocore.choices import BLOCK_SIZES, MILLIMETRES, MaxError, Unbounded, Voxels
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Options
+from isocore.extraction import Extract, Extraction, Outlook
+from isocore.job import Options
 from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
 
-BLOCK_SIZES = (1, 2, 4, 8, 16, 32)
 DEFAULT_BLOCK_SIZE = 16
-DEFAULT_MAX_ERROR = "0.5"
-
-_LENGTH = re.compile(r"(?P<number>[^a-zµ]+?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
-_MILLIMETRES = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "m": 1e3}
+DEFAULT_MAX_ERROR = Voxels(0.5, "0.5")
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,12 +38,12 @@ class Bound:
     text: str
 
 
-def prepare_climbing(volume: Volume, options: Options) -> Extract:
+def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extract:
     """Check what is asked; before several isovalues, look once at the range of each part of the volume."""
     block_size = check_block_size(options.block_size)
-    bound = bound_for(volume, options.max_error)
+    bound = bound_for(volume, options.max_error or DEFAULT_MAX_ERROR)
     # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
-    ranges = _kernels.sample_ranges(volume.samples, options.threads) if options.isovalues > 1 else None
+    ranges = _kernels.sample_ranges(volume.samples, options.threads) if outlook.isovalues > 1 else None
 
     def extract(isovalue: float) -> Extraction:
         climbed = _kernels.climb(
@@ -76,47 +73,26 @@ def check_block_size(size: int | None) -> int:
     return size
 
 
-def parse_max_error(text: str | None) -> tuple[float, str]:
-    """The number and the unit ("" for voxels) of an error bound; infinity for "none". Checks all but the volume."""
-    text = DEFAULT_MAX_ERROR if text is None else text.strip()
-    if text.lower() == "none":
-        return math.inf, ""
-    match = _LENGTH.fullmatch(text)
-    wrong = OptionError(f"--max-error {text}: is no length; write voxels (0.5), world units (0.3mm), or none")
-    if match is None:
-        raise wrong
-    unit = match["unit"].lower()
-    if unit not in ("", "voxel", "voxels", *_MILLIMETRES):
-        raise OptionError(f"--max-error {text}: {match['unit']} is no unit known here; write voxels (0.5) or 0.3mm")
-    try:
-        number = float(match["number"])
-    except ValueError:
-        raise wrong from None
-    if not math.isfinite(number) or number < 0:
-        raise OptionError(f"--max-error {text}: must be a finite length, not negative; none lifts the bound")
-    return number, unit if unit in _MILLIMETRES else ""
-
-
-def bound_for(volume: Volume, text: str | None) -> Bound:
-    """The bound on the surface's error in index space.
+def bound_for(volume: Volume, asked: MaxError) -> Bound:
+    """The bound on the surface's error in index space. Raises OptionError where the volume lacks the bound's unit.
 
     Voxels are counted along the index axes, whatever their spacing. World units are measured in the world: each axis
     is stretched by its spacing, and where the axes are not at right angles the bound shrinks so that it still holds.
     """
-    number, unit = parse_max_error(text)
-    said = DEFAULT_MAX_ERROR if text is None else text.strip()
-    if not unit:
-        return Bound(number, False, said)
+    if isinstance(asked, Unbounded):
+        return Bound(math.inf, False, asked.text)
+    if isinstance(asked, Voxels):
+        return Bound(asked.distance, False, asked.text)
     if not volume.unit:
         raise OptionError(
-            f"--max-error {said}: the volume does not say its unit; give the error in voxels, or the volume a spacing"
+            f"--max-error {asked}: the volume does not say its unit; give the error in voxels, or the volume a spacing"
         )
-    if volume.unit not in _MILLIMETRES:
-        raise OptionError(f"--max-error {said}: the volume is in {volume.unit}; give the error in voxels")
+    if volume.unit not in MILLIMETRES:
+        raise OptionError(f"--max-error {asked}: the volume is in {volume.unit}; give the error in voxels")
     directions = np.asarray(volume.affine)[:3, :3] / np.asarray(volume.spacing)
     stretch = max(1.0, float(np.linalg.norm(directions, 2)) * (1 - 1e-12))
-    distance = number * _MILLIMETRES[unit] / _MILLIMETRES[volume.unit]
-    return Bound(distance / stretch, True, said)
+    distance = asked.distance * MILLIMETRES[asked.unit] / MILLIMETRES[volume.unit]
+    return Bound(distance / stretch, True, asked.text)
 
 
 def climbing_facts(facts: _kernels.ClimbingFacts, bound: Bound, unit: str) -> dict[str, Any]:

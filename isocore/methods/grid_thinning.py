@@ -7,7 +7,8 @@ is three to four times slower than marching cubes; isocore/kernels/thinning/grid
 from __future__ import annotations
 
 from isocore import _kernels
-from isocore.extraction import Extract, Extraction, Options
+from isocore.extraction import Extract, Extraction
+from isocore.job import Options
 from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
 

@@ -12,7 +12,8 @@ import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.extraction import Extract, Extraction, Options
+from isocore.extraction import Extract, Extraction
+from isocore.job import Options
 from isocore.surface import Surface
 
 # float32 is enough while its steps are below this part of a cell: some cells are smaller than the mean one, and

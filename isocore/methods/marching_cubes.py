@@ -12,17 +12,17 @@ import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
+from isocore.choices import TOPOLOGIES
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Field, Options
+from isocore.extraction import Extract, Extraction, Field, Outlook
+from isocore.job import Options
 from isocore.methods.marching_cells import prepare_marching_cells
 from isocore.surface import Surface, place_fresh
 from isocore.volume import Volume
 
-TOPOLOGIES = ("faces", "trilinear")
 
-
-def prepare_marching_cubes(field: Field, options: Options) -> Extract:
-    """Scan the whole field for every isovalue."""
+def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> Extract:
+    """Scan the whole field for every isovalue, whatever the outlook."""
     trilinear = options.topology == "trilinear"
     if options.topology not in (None, *TOPOLOGIES):
         raise OptionError(f"--topology {options.topology}: must be {' or '.join(TOPOLOGIES)}")

@@ -12,7 +12,8 @@ from pathlib import Path
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, IsocoreError
-from isocore.extraction import Extract, Extraction, Field, Options
+from isocore.extraction import Extract, Extraction, Field, Outlook
+from isocore.job import Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
@@ -25,14 +26,16 @@ def build_index(mesh: CellMesh) -> MeshIndex:
     return MeshIndex(IndexPart(*built.tets), IndexPart(*built.hexes), built.original, built.edges)
 
 
-def prepare_thinning(field: Field, options: Options) -> Extract:
+def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extract:
     """Thin the field once, then walk for every isovalue."""
-    return _prepare_mesh(field, options) if isinstance(field, CellMesh) else prepare_grid_thinning(field, options)
+    if isinstance(field, CellMesh):
+        return _prepare_mesh(field, options, outlook)
+    return prepare_grid_thinning(field, options)
 
 
-def _prepare_mesh(mesh: CellMesh, options: Options) -> Extract:
-    """Take the index from `options.index` if it matches, else thin now; then walk for every isovalue."""
-    index, ready, warnings = _index_of(mesh, options)
+def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
+    """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
+    index, ready, warnings = _index_of(mesh, outlook)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
     single = single_precision(mesh)
     known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
@@ -46,17 +49,17 @@ def _prepare_mesh(mesh: CellMesh, options: Options) -> Extract:
     return extract
 
 
-def _index_of(mesh: CellMesh, options: Options) -> tuple[MeshIndex, _kernels.Index, tuple[str, ...]]:
+def _index_of(mesh: CellMesh, outlook: Outlook) -> tuple[MeshIndex, _kernels.Index, tuple[str, ...]]:
     """The index beside the mesh if it matches, else a new one; and what to tell the user about that choice."""
     warnings = []
-    if options.index is not None:
+    if outlook.index is not None:
         try:
-            index = load_index(options.index, mesh)
-            return index, _checked(options.index, mesh, index), ()
+            index = load_index(outlook.index, mesh)
+            return index, _checked(outlook.index, mesh, index), ()
         except IsocoreError as error:
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh)
-    if options.isovalues == 1:
+    if outlook.isovalues == 1:
         warnings.append("one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`")
     if index.extrema > NOISE * len(mesh.points):
         share = 100 * index.extrema / len(mesh.points)

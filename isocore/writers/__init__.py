@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
+from isocore.choices import FORMATS
 from isocore.errors import OptionError, writing
 from isocore.surface import Surface
 from isocore.whole_file import whole_file
@@ -21,9 +22,7 @@ from isocore.writers.stl import write_stl
 Writer = Callable[[BinaryIO, Surface, int], tuple[str, ...]]
 
 #: suffix -> writer(stream, surface, threads), which returns its warnings.
-WRITERS: dict[str, Writer] = {".obj": write_obj, ".ply": write_ply, ".stl": write_stl}
-
-FORMATS = tuple(suffix[1:] for suffix in WRITERS)
+WRITERS: dict[str, Writer] = {".ply": write_ply, ".obj": write_obj, ".stl": write_stl}
 
 
 def write(

@@ -11,8 +11,9 @@ from shapes import Shape, padded_shapes
 
 from isocore import _kernels
 from isocore.backends import Options, prepare
+from isocore.choices import parse_max_error
 from isocore.errors import OptionError
-from isocore.methods.climbing import bound_for, check_block_size, parse_max_error
+from isocore.methods.climbing import bound_for, check_block_size
 from isocore.volume import Volume
 
 Points = npt.NDArray[np.float64]
@@ -112,7 +113,7 @@ def test_millimetres_are_measured_in_the_world() -> None:
     assert in_world["max_world"] <= 0.4 < in_world["max_world"] + 0.2
     in_voxels = prepare(coarse, "asc", Options(max_error="0.4"))(0.3).facts["error"]
     assert in_voxels["max"] <= 0.4
-    assert bound_for(coarse, "400um").distance == pytest.approx(0.4)
+    assert bound_for(coarse, parse_max_error("400um")).distance == pytest.approx(0.4)
 
 
 def test_sheared_axes_shrink_the_bound() -> None:
@@ -120,8 +121,8 @@ def test_sheared_axes_shrink_the_bound() -> None:
     affine = np.eye(4)
     affine[0, 1] = 0.5
     sheared = Volume(wavy(), affine=affine, unit="mm")
-    assert bound_for(sheared, "0.4mm").distance < 0.4 * 0.9
-    assert bound_for(volume(), "0.4mm").distance == pytest.approx(0.4, rel=1e-9)
+    assert bound_for(sheared, parse_max_error("0.4mm")).distance < 0.4 * 0.9
+    assert bound_for(volume(), parse_max_error("0.4mm")).distance == pytest.approx(0.4, rel=1e-9)
 
 
 @pytest.mark.parametrize("text", ["-1", "nan", "inf", "mm", "0.5 parsec", "", "a"])

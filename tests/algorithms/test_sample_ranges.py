@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from isocore import Volume, _kernels
-from isocore.backends import Options, prepare
+from isocore.backends import Options, Outlook, prepare
 from isocore.volume import SAMPLE_TYPES
 
 
@@ -74,7 +74,7 @@ def test_ranges_of_another_volume_are_refused() -> None:
 def test_a_run_of_several_isovalues_gives_what_single_runs_give() -> None:
     """`prepare` looks the ranges up only where several isovalues are to come."""
     volume = Volume(ball((80, 40, 40), np.dtype(np.float32)))
-    several = prepare(volume, "asc", Options(isovalues=3))
-    single = prepare(volume, "asc", Options(isovalues=1))
+    several = prepare(volume, "asc", Options(), Outlook(isovalues=3))
+    single = prepare(volume, "asc", Options(), Outlook(isovalues=1))
     for isovalue in (10.0, 20.0, 35.0):
         assert several(isovalue).surface.vertices.tobytes() == single(isovalue).surface.vertices.tobytes()

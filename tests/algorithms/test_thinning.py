@@ -10,7 +10,8 @@ from mesh_oracles import Glued, triangle_set
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.extraction import Options
+from isocore.extraction import Outlook
+from isocore.job import Options
 from isocore.methods.thinning import build_index, prepare_thinning, ready_index
 
 KINDS = pytest.mark.parametrize("hexes", [False, True], ids=["tets", "hexes"])
@@ -218,7 +219,7 @@ def test_a_broken_mesh_is_contoured_as_the_full_scan_does(what: str) -> None:
 )
 def test_the_first_offender_is_named(what: str, sentence: str) -> None:
     """Meshes that cannot be glued everywhere are contoured with a warning that says where."""
-    warnings = prepare_thinning(broken_mesh(what), Options())(0.5).warnings
+    warnings = prepare_thinning(broken_mesh(what), Options(), Outlook())(0.5).warnings
     assert any(sentence in warning for warning in warnings), warnings
 
 
@@ -227,17 +228,17 @@ def test_advice_when_thinning_does_not_pay() -> None:
     mesh = meshes.mesh_of(np.ones((6, 6, 6), bool))
     noise = meshes.with_values(mesh, np.random.default_rng(7).random(len(mesh.points)))
     smooth = meshes.with_values(mesh, mesh.points.sum(axis=1))
-    assert prepare_thinning(smooth, Options())(5.0).warnings == ()
-    (one,) = prepare_thinning(smooth, Options(isovalues=1))(5.0).warnings
+    assert prepare_thinning(smooth, Options(), Outlook())(5.0).warnings == ()
+    (one,) = prepare_thinning(smooth, Options(), Outlook(isovalues=1))(5.0).warnings
     assert "-b mc" in one
-    (noisy,) = prepare_thinning(noise, Options())(0.5).warnings
+    (noisy,) = prepare_thinning(noise, Options(), Outlook())(0.5).warnings
     assert "% of the points are extrema" in noisy
 
 
 def test_the_report_part_counts_the_search() -> None:
     """cells, extrema, skeleton, seeds, visited, intersected, as cli.md names them."""
     mesh = meshes.mesh_of(np.ones((6, 6, 6), bool))
-    extraction = prepare_thinning(meshes.with_values(mesh, mesh.points.sum(axis=1)), Options())(5.5)
+    extraction = prepare_thinning(meshes.with_values(mesh, mesh.points.sum(axis=1)), Options(), Outlook())(5.5)
     search = extraction.facts["search"]
     assert list(search) == ["cells", "extrema", "skeleton", "seeds", "visited", "intersected"]
     assert search["cells"] == 1296

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from isocore.backends import Options, prepare
+from isocore.backends import Options, Outlook, prepare
 from isocore.cell_mesh import CellMesh
 
 ORDERS = ((0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1))
@@ -68,7 +68,7 @@ def scalar_tree(mesh: CellMesh, threads: int) -> Callable[[float], int]:
 def ours(mesh: CellMesh, backend: str, threads: int) -> tuple[Callable[[float], int], float]:
     """A backend's extraction, and the seconds its preparation took."""
     start = time.perf_counter()
-    extract = prepare(mesh, backend, Options(threads=threads, isovalues=20))
+    extract = prepare(mesh, backend, Options(threads=threads), Outlook(isovalues=20))
     return lambda isovalue: len(extract(isovalue).surface.triangles), time.perf_counter() - start
 
 

@@ -1,0 +1,181 @@
+"""What may be asked for in words: each grammar stands here once, and each value prints back to the text it came from.
+
+An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, or `A:B:N` (N numbers from A to B). The bound
+on the error is a length in voxels (`0.5`) or in world units (`0.3mm`), or `none`. The command line's help reads this
+file, so it imports no numpy before a range is asked for.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+from isocore.errors import OptionError
+
+Format: TypeAlias = Literal["ply", "obj", "stl"]
+#: What surfaces are written as; the first is the default.
+FORMATS: tuple[Format, ...] = get_args(Format)
+BLOCK_SIZES = (1, 2, 4, 8, 16, 32)
+TOPOLOGIES = ("faces", "trilinear")
+#: Millimetres in one unit of length.
+MILLIMETRES = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "m": 1e3}
+
+_MOST_OF_A_RANGE = 10_000
+_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):(?P<count>\d+)")
+_LENGTH = re.compile(r"(?P<number>[^a-zµ]+?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An isovalue given as such; text: as it was written, since 50 and 50.0 name different outputs."""
+
+    value: float
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Percentile:
+    """The value below which `percent` (0 to 100) of the finite samples lie; text: as it was written, p90."""
+
+    percent: float
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Otsu:
+    """Otsu's threshold."""
+
+    def __str__(self) -> str:
+        return "otsu"
+
+
+@dataclass(frozen=True, slots=True)
+class Auto:
+    """The middle of two values where there are only two, else Otsu's threshold."""
+
+    def __str__(self) -> str:
+        return "auto"
+
+
+Choice: TypeAlias = Number | Percentile | Otsu | Auto
+
+
+@dataclass(frozen=True, slots=True)
+class Voxels:
+    """A bound of so many voxels, counted along the index axes."""
+
+    distance: float
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class WorldLength:
+    """A bound in the world; unit: one of MILLIMETRES."""
+
+    distance: float
+    unit: str
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True, slots=True)
+class Unbounded:
+    """No bound on the error."""
+
+    text: str = "none"
+
+    def __str__(self) -> str:
+        return self.text
+
+
+MaxError: TypeAlias = Voxels | WorldLength | Unbounded
+
+
+def parse_choices(texts: Iterable[str]) -> tuple[Choice, ...]:
+    """One choice per surface, ranges spread, no two alike; `auto` where nothing is asked for."""
+    return distinct(choice for text in texts for choice in spread(text))
+
+
+def distinct(choices: Iterable[Choice]) -> tuple[Choice, ...]:
+    """Each choice once, in the order they are named; `auto` where none is."""
+    return tuple(dict.fromkeys(choices)) or (Auto(),)
+
+
+def parse_choice(text: str) -> Choice:
+    """A single choice. Raises OptionError for nonsense, and for a range of several."""
+    choice, *others = spread(text)
+    if others:
+        raise OptionError(f"isovalue {text}: is {1 + len(others)} isovalues; ask for one")
+    return choice
+
+
+def spread(text: str) -> tuple[Choice, ...]:
+    """The choices that one text asks for: several for a range. Raises OptionError for nonsense."""
+    text = text.strip()
+    if text.lower() == "auto":
+        return (Auto(),)
+    if text.lower() == "otsu":
+        return (Otsu(),)
+    if re.fullmatch(r"[pP][\d.]+", text):
+        percent = _number(text, text[1:])
+        if not 0 <= percent <= 100:
+            raise OptionError(f"isovalue {text}: a percentile lies between p0 and p100")
+        return (Percentile(percent, text.lower()),)
+    if match := _RANGE.fullmatch(text):
+        return _spread_range(text, _number(text, match["first"]), _number(text, match["last"]), int(match["count"]))
+    return (Number(_number(text, text), text),)
+
+
+def _spread_range(text: str, first: float, last: float, count: int) -> tuple[Choice, ...]:
+    """Nine digits of each number name it, and are what is drawn: the name of an output says its isovalue exactly."""
+    if not 1 <= count <= _MOST_OF_A_RANGE:
+        raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
+    import numpy as np  # late, so that the command line's help stays quick
+
+    names = [f"{value:.9g}" for value in np.linspace(first, last, count).tolist()]
+    return tuple(Number(float(name), name) for name in names)
+
+
+def _number(text: str, part: str) -> float:
+    try:
+        value = float(part)
+    except ValueError:
+        raise OptionError(f"isovalue {text}: is not a number, otsu, pNN or A:B:N") from None
+    if not math.isfinite(value):
+        raise OptionError(f"isovalue {text}: must be finite")
+    return value
+
+
+def parse_max_error(text: str) -> MaxError:
+    """A bound on the error. Raises OptionError for nonsense; whether a volume has the unit is checked by its method."""
+    text = text.strip()
+    if text.lower() == "none":
+        return Unbounded(text)
+    match = _LENGTH.fullmatch(text)
+    wrong = OptionError(f"--max-error {text}: is no length; write voxels (0.5), world units (0.3mm), or none")
+    if match is None:
+        raise wrong
+    unit = match["unit"].lower()
+    if unit not in ("", "voxel", "voxels", *MILLIMETRES):
+        raise OptionError(f"--max-error {text}: {match['unit']} is no unit known here; write voxels (0.5) or 0.3mm")
+    try:
+        number = float(match["number"])
+    except ValueError:
+        raise wrong from None
+    if not math.isfinite(number) or number < 0:
+        raise OptionError(f"--max-error {text}: must be a finite length, not negative; none lifts the bound")
+    return WorldLength(number, unit, text) if unit in MILLIMETRES else Voxels(number, text)

@@ -1,0 +1,79 @@
+"""What is asked of one file: its surfaces, where they go, and how they are made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from isocore.choices import Choice, Format, MaxError, parse_choice, parse_max_error
+from isocore.readers.options import ReadOptions
+from isocore.volume import Space
+
+#: The target that is not a file.
+STDOUT = Path("-")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Options:
+    """What a user may ask of an extraction. What is None is left to the backend.
+
+    threads: at least 1. Results do not depend on it.
+    cap: close the surface at the volume's border.
+    normals: compute vertex normals.
+    block_size: cells per block and axis, one of BLOCK_SIZES.
+    max_error: how far the reference's vertices may lie from the surface; a text is parsed.
+    topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
+        trilinear function does.
+    """
+
+    threads: int = 1
+    cap: bool = False
+    normals: bool = False
+    block_size: int | None = None
+    max_error: MaxError | None = None
+    topology: str | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.max_error, str):
+            object.__setattr__(self, "max_error", parse_max_error(self.max_error))
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One surface of a job: how its isovalue is chosen (a text is parsed) and where it goes; `-` is stdout."""
+
+    choice: Choice
+    output: Path
+
+    def __post_init__(self) -> None:
+        if isinstance(self.choice, str):
+            object.__setattr__(self, "choice", parse_choice(self.choice))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """What is asked of one file.
+
+    format: of the outputs.
+    backend: by name, or None for the default of the field.
+    space: of the outputs, "native" for the file's own.
+    reference: set marching cubes beside each surface.
+    require: names out of requirements.REQUIREMENTS; max_triangles: a further one.
+    ambiguities: where the ambiguous faces go, for a job of one target.
+    if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
+        both, also on a cluster; `convert` alone always converts.
+    """
+
+    source: Path
+    targets: tuple[Target, ...]
+    format: Format = "ply"
+    backend: str | None = None
+    options: Options = field(default_factory=Options)
+    read_options: ReadOptions = field(default_factory=ReadOptions)
+    space: Space = "native"
+    reference: bool = True
+    require: tuple[str, ...] = ()
+    max_triangles: int | None = None
+    ambiguities: Path | None = None
+    if_changed: bool = False
+    force: bool = False
