@@ -2,17 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
 from .console import plain_table
-from .options import PATH, default_threads, read_options, reading_options
+from .options import PATH, Reading, default_threads, reading_options
 
 if TYPE_CHECKING:
     from isocore.benches.thinning import Table
     from isocore.volume import Volume
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wanted:
+    """Which tables, of what, and where a volume's goes besides the screen."""
+
+    reading: Reading
+    backend: Literal["asc", "thinning"]
+    isovalue: str | None
+    isovalues: int
+    threads: int
+    csv: Path | None
+    markdown: Path | None
+    plot: Path | None
+
+    def check(self, files: int) -> None:
+        """Refuse options that do not go together."""
+        in_files = self.csv or self.markdown or self.plot
+        if files > 1 and in_files:
+            raise click.UsageError("--csv, --markdown and --plot name one file; give one FILE")
+        if self.backend == "thinning" and (self.isovalue or in_files):
+            raise click.UsageError("-i, --csv, --markdown and --plot belong to -b asc; -b thinning takes --isovalues")
 
 
 @click.command(short_help="The papers' tables on your own data.")
@@ -35,12 +58,7 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
 def bench(
-    context: click.Context,
-    files: tuple[Path, ...],
-    isovalues: int,
-    threads: int | None,
-    as_json: bool,
-    **chosen: Any,
+    context: click.Context, files: tuple[Path, ...], threads: int | None, as_json: bool, **chosen: Any
 ) -> None:
     """Print the papers' tables for each FILE: a volume's triangles, time and error by block size and error bound, or
     the time every way to find an isosurface's cells takes in a mesh.
@@ -50,17 +68,15 @@ def bench(
     isocore bench sample_volumes/torus.vtu
     isocore bench sample_volumes/knot.nii.gz -b thinning
     """
-    if len(files) > 1 and any(chosen[option] for option in ("csv", "markdown", "plot")):
-        raise click.UsageError("--csv, --markdown and --plot name one file; give one FILE")
-    if chosen["backend"] == "thinning" and any(chosen[option] for option in ("isovalue", "csv", "markdown", "plot")):
-        raise click.UsageError("-i, --csv, --markdown and --plot belong to -b asc; -b thinning takes --isovalues")
+    wanted = Wanted(threads=threads or default_threads(), **chosen)
+    wanted.check(len(files))
     from isocore.errors import IsocoreError
 
     failures = 0
     records = []
     for path in files:
         try:
-            tables = _tables(path, isovalues, threads or default_threads(), chosen)
+            tables = _tables(path, wanted)
         except IsocoreError as error:
             click.echo(f"isocore: {error}", err=True)
             failures += 1
@@ -76,25 +92,25 @@ def bench(
     context.exit(1 if failures else 0)
 
 
-def _tables(path: Path, isovalues: int, threads: int, chosen: dict[str, Any]) -> list[Table]:
+def _tables(path: Path, wanted: Wanted) -> list[Table]:
     from isocore.benches.grid_thinning import grid_bench
     from isocore.benches.thinning import mesh_bench
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
     from isocore.readers import read
 
-    field = read(path, read_options(chosen))
+    field = read(path, wanted.reading.read_options())
     try:
-        if not isinstance(field, CellMesh):
-            if chosen["backend"] == "thinning":
-                return grid_bench(field, isovalues=isovalues, threads=threads)
-            return [_volume_table(field, threads, chosen)]
-        return mesh_bench(field, isovalues=isovalues, threads=threads)
+        if isinstance(field, CellMesh):
+            return mesh_bench(field, isovalues=wanted.isovalues, threads=wanted.threads)
+        if wanted.backend == "thinning":
+            return grid_bench(field, isovalues=wanted.isovalues, threads=wanted.threads)
+        return [_volume_table(field, wanted)]
     except FieldError as error:
         raise FieldError(f"{path}: {error}") from error
 
 
-def _volume_table(volume: Volume, threads: int, chosen: dict[str, Any]) -> Table:
+def _volume_table(volume: Volume, wanted: Wanted) -> Table:
     from isocore.benches.climbing import render_csv, render_markdown, volume_bench
     from isocore.benches.climbing_plot import render_svg
     from isocore.choices import parse_choices
@@ -102,14 +118,19 @@ def _volume_table(volume: Volume, threads: int, chosen: dict[str, Any]) -> Table
     from isocore.isovalue import choose
     from isocore.whole_file import whole_file
 
-    asked = parse_choices((chosen["isovalue"],) if chosen["isovalue"] else ())
+    asked = parse_choices([wanted.isovalue] if wanted.isovalue else [])
     if len(asked) != 1:
-        raise click.UsageError(f"-i {chosen['isovalue']}: bench takes one isovalue")
+        raise click.UsageError(f"-i {wanted.isovalue}: bench takes one isovalue")
+    threads = wanted.threads
     found = volume_bench(volume, choose(asked[0], histogram(volume, threads=threads)).isovalue, threads=threads)
     table = found.table()
-    for option, text in (("csv", render_csv(table)), ("markdown", render_markdown(table)), ("plot", render_svg(found))):
-        if chosen[option] is not None:
-            with whole_file(chosen[option]) as stream:
+    for path, text in (
+        (wanted.csv, render_csv(table)),
+        (wanted.markdown, render_markdown(table)),
+        (wanted.plot, render_svg(found)),
+    ):
+        if path is not None:
+            with whole_file(path) as stream:
                 stream.write(text.encode())
     return table
 

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 import click
 
-from .options import PATH, read_options, reading_options
+from .options import PATH, Reading, reading_options
 
 
 @click.command(short_help="Build the thinning index beside a mesh.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
 @click.pass_context
-def index(context: click.Context, files: tuple[Path, ...], **chosen: Any) -> None:
+def index(context: click.Context, files: tuple[Path, ...], reading: Reading) -> None:
     """Thin each mesh FILE and write FILE.isoindex, which convert uses while mesh and field stay as they are.
 
     \b
@@ -26,14 +25,14 @@ def index(context: click.Context, files: tuple[Path, ...], **chosen: Any) -> Non
     failures = 0
     for path in files:
         try:
-            click.echo(_index(path, chosen))
+            click.echo(_index(path, reading))
         except IsocoreError as error:
             click.echo(f"isocore: {error}", err=True)
             failures += 1
     context.exit(1 if failures else 0)
 
 
-def _index(path: Path, chosen: dict[str, Any]) -> str:
+def _index(path: Path, reading: Reading) -> str:
     """Writes the index of one mesh and says what it holds."""
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
@@ -41,7 +40,7 @@ def _index(path: Path, chosen: dict[str, Any]) -> str:
     from isocore.methods.thinning import build_index
     from isocore.readers import read
 
-    mesh = read(path, read_options(chosen))
+    mesh = read(path, reading.read_options())
     if not isinstance(mesh, CellMesh):
         raise FieldError(f"{path}: is a volume, whose cells need no index; index meshes only")
     start = perf_counter()

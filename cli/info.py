@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import PATH, default_threads, read_options, reading_options
+from .options import PATH, Reading, default_threads, reading_options
 
 if TYPE_CHECKING:
     from isocore.describe import Description
@@ -23,7 +23,7 @@ _ROWS = 6
 @reading_options
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
-def info(context: click.Context, files: tuple[Path, ...], as_json: bool, **chosen: Any) -> None:
+def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading: Reading) -> None:
     """Say what each FILE holds and which isovalues make sense.
 
     \b
@@ -36,7 +36,7 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, **chose
     described: list[dict[str, Any]] = []
     for path in files:
         try:
-            found = describe(path, read_options(chosen), threads=default_threads())
+            found = describe(path, reading.read_options(), threads=default_threads())
         except IsocoreError as error:
             click.echo(f"isocore: {error}", err=True)
             failures += 1

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields
+from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import click
 
 from isocore import choices
 from isocore.errors import OptionError
+
+if TYPE_CHECKING:
+    from isocore.readers.options import ReadOptions
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -36,7 +41,7 @@ class Numbers(click.ParamType):
         return numbers
 
 
-class MaxError(click.ParamType):
+class MaxErrorType(click.ParamType):
     """Voxels (0.5), world units (0.3mm), or none."""
 
     name = "E"
@@ -102,45 +107,71 @@ class Jobs(click.ParamType):
         return int(value)
 
 
-def reading_options(command: F) -> F:
-    """What a file cannot tell about itself."""
-    options = (
-        click.option("--volume", type=VolumeChoice(), help="4-D input: which volume, from 0, or all."),
-        click.option("--field", metavar="NAME", help="VTU: which point field."),
-        click.option("--component", metavar="I|magnitude", help="VTU: which component of a vector field."),
-        click.option("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis."),
-        click.option("--dtype", metavar="T", help="Raw: uint8, int16, float32 and so on."),
-        click.option("--spacing", type=Numbers(float), metavar="A,B,C", help="Raw: distance of samples per axis."),
-        click.option("--origin", type=Numbers(float), metavar="A,B,C", help="Raw: place of the first sample."),
-        click.option("--byte-order", type=click.Choice(["little", "big"]), help="Raw: default little."),
-        click.option("--offset", type=click.IntRange(min=0), metavar="BYTES", help="Raw: bytes before the samples."),
-    )
-    return _with(command, options)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """What a file cannot tell about itself, as it was typed."""
+
+    volume: int | Literal["all"] | None
+    field: str | None
+    component: str | None
+    shape: tuple[int, ...] | None
+    dtype: str | None
+    spacing: tuple[float, ...] | None
+    origin: tuple[float, ...] | None
+    byte_order: str | None
+    offset: int | None
+
+    def read_options(self) -> ReadOptions:
+        """The same for a reader; a volume of "all" is spread by whoever plans the jobs."""
+        from isocore.readers.options import ReadOptions  # late: readers bring numpy, which no help needs
+
+        return ReadOptions(
+            volume=None if self.volume == "all" else self.volume,
+            field=self.field,
+            component=self.component,
+            shape=self.shape,
+            dtype=self.dtype,
+            spacing=self.spacing,
+            origin=self.origin,
+            byte_order=self.byte_order,
+            offset=self.offset,
+        )
 
 
-def _with(command: F, options: tuple[Callable[[F], F], ...]) -> F:
-    for option in reversed(options):
+def reading_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of Reading; it gets them as one argument, `reading`."""
+
+    @wraps(command)
+    def with_reading(*arguments: Any, **values: Any) -> None:
+        reading = Reading(**{item.name: values.pop(item.name) for item in fields(Reading)})
+        command(*arguments, reading=reading, **values)
+
+    return with_all(with_reading, _READING_OPTIONS)
+
+
+_READING_OPTIONS = (
+    click.option("--volume", type=VolumeChoice(), help="4-D input: which volume, from 0, or all."),
+    click.option("--field", metavar="NAME", help="VTU: which point field."),
+    click.option("--component", metavar="I|magnitude", help="VTU: which component of a vector field."),
+    click.option("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis."),
+    click.option("--dtype", metavar="T", help="Raw: uint8, int16, float32 and so on."),
+    click.option("--spacing", type=Numbers(float), metavar="A,B,C", help="Raw: distance of samples per axis."),
+    click.option("--origin", type=Numbers(float), metavar="A,B,C", help="Raw: place of the first sample."),
+    click.option("--byte-order", type=click.Choice(["little", "big"]), help="Raw: default little."),
+    click.option("--offset", type=click.IntRange(min=0), metavar="BYTES", help="Raw: bytes before the samples."),
+)
+
+
+def with_all(command: F, options: Iterable[Callable[[F], F]]) -> F:
+    """The command with these options, which its help lists in this order."""
+    for option in reversed(tuple(options)):
         command = option(command)
     return command
-
-
-def read_options(chosen: dict[str, Any]) -> Any:
-    """The ReadOptions out of a command's arguments; `--volume all` is spread by the caller."""
-    from isocore.readers.options import ReadOptions
-
-    names = ("field", "component", "shape", "dtype", "spacing", "origin", "byte_order", "offset")
-    volume = chosen["volume"]
-    return ReadOptions(volume=volume if isinstance(volume, int) else None, **{name: chosen[name] for name in names})
 
 
 def default_threads() -> int:
     """The processors this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def at_once(chosen: dict[str, Any]) -> int:
-    """How many inputs are to run at once."""
-    return default_threads() if chosen["jobs"] == "auto" else int(chosen["jobs"])
 
 
 PATH = click.Path(path_type=Path)

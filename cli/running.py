@@ -6,17 +6,16 @@ import os
 import sys
 from pathlib import Path
 from time import perf_counter
-from typing import Any
 
 from isocore.batches.depfile import depfile_text
 from isocore.batches.run import Batch, run_jobs
-from isocore.job import Job
+from isocore.job import Job, Target
 from isocore.memory import free_bytes
 from isocore.report import BatchReport, RunReport, github_annotations, save_report
 from isocore.whole_file import whole_file
 
 from .console import Progress, lines_of, say, say_table
-from .options import at_once
+from .convert_options import ConvertOptions
 
 #: A report that takes longer to save than this is left for so many times as long.
 _QUICK_SECONDS = 0.02
@@ -54,48 +53,48 @@ class Records:
                 self._due[path] = end + _SAVING_SHARE * max(0.0, end - begin - _QUICK_SECONDS)
 
 
-def run_and_report(jobs: list[Job], chosen: dict[str, Any], start: float) -> BatchReport:
+def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> BatchReport:
     """Run the jobs of `isocore convert`. Interrupted, the reports hold what was done until then."""
-    records = Records(jobs, chosen["reports"], chosen["page_size"], start)
+    records = Records(jobs, options.reports, options.page_size, start)
     said: set[str] = set()
     total = sum(len(job.targets) for job in jobs)
-    with Progress(total, wanted=not (chosen["quiet"] or chosen["no_progress"])) as progress:
+    with Progress(total, wanted=not (options.quiet or options.no_progress)) as progress:
         try:
-            for job, run in run_jobs(jobs, _batch(jobs, chosen), at=progress.at):
+            for job, run in run_jobs(jobs, _batch(jobs, options), at=progress.at):
                 records.add(job, run)
                 progress.step()
                 for line in lines_of(run):
                     if line not in said:
                         say(line)
                 said.update(lines_of(run))
-                if chosen["verbose"]:
+                if options.verbose:
                     seconds = run.seconds.get("total", 0.0)
                     say(f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s")
         finally:
             records.save()
     batch = records.batch()
-    if chosen["depfile"] is not None:
-        with whole_file(chosen["depfile"]) as stream:
+    if options.depfile is not None:
+        with whole_file(options.depfile) as stream:
             stream.write(depfile_text(jobs).encode())
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in github_annotations(batch):
             say(line)
-    if not chosen["quiet"]:
+    if not options.quiet:
         say_table(batch)
     return batch
 
 
-def _batch(jobs: list[Job], chosen: dict[str, Any]) -> Batch:
-    alone = len(jobs) == 1 and chosen["timeout"] is None
-    limit = chosen["memory_limit"]
+def _batch(jobs: list[Job], options: ConvertOptions) -> Batch:
+    alone = len(jobs) == 1 and options.timeout is None
+    limit = options.memory_limit
     return Batch(
-        workers=0 if alone else min(at_once(chosen), len(jobs)),
-        seconds_per_job=chosen["timeout"],
+        workers=0 if alone else min(options.at_once, len(jobs)),
+        seconds_per_job=options.timeout,
         memory_bytes=free_bytes() if limit is None else limit,
-        scheduler=chosen["scheduler"],
-        fail_fast=chosen["fail_fast"],
+        scheduler=options.scheduler,
+        fail_fast=options.fail_fast,
     )
 
 
-def _targets(jobs: list[Job]) -> list[tuple[Job, Any]]:
+def _targets(jobs: list[Job]) -> list[tuple[Job, Target]]:
     return [(job, target) for job in jobs for target in job.targets]
