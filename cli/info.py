@@ -12,6 +12,7 @@ from .options import PATH, Reading, default_threads, reading_options
 
 if TYPE_CHECKING:
     from isocore.describe import Description
+    from isocore.histogram import Bars
 
 _WIDTH = 64
 _BARS = " ▁▂▃▄▅▆▇█"
@@ -53,7 +54,7 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
 
 
 def _record(path: Path, found: Description) -> dict[str, Any]:
-    from isocore.report.record import plain
+    from isocore.report.keys import plain
 
     isovalues = [{"isovalue": one.isovalue, "option": str(one.asked), "why": one.why} for one in found.isovalues]
     record = {"source": str(path), **found.facts, "histogram": found.spread.coarse(), "isovalues": isovalues}
@@ -97,11 +98,11 @@ def _text(value: Any) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def drawn(coarse: dict[str, Any]) -> list[str]:
+def drawn(bars: Bars) -> list[str]:
     """A histogram as lines of text; heights are logarithmic, since the background outnumbers all else."""
     from math import log1p
 
-    counts = coarse["counts"]
+    counts = bars.counts
     if not counts:
         return []
     top = max(log1p(count) for count in counts)
@@ -111,5 +112,5 @@ def drawn(coarse: dict[str, Any]) -> list[str]:
     for row in reversed(range(_ROWS)):
         cells = (min(max(height - row * (len(_BARS) - 1), 0), len(_BARS) - 1) for height in heights)
         lines.append("  " + "".join(_BARS[cell] for cell in cells).rstrip())
-    low, high = f"{coarse['low']:.6g}", f"{coarse['high']:.6g}"
+    low, high = f"{bars.low:.6g}", f"{bars.high:.6g}"
     return [*lines, "  " + low + high.rjust(max(len(counts) - len(low), len(high) + 1)) + "  (counts, log scale)"]

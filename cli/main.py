@@ -47,7 +47,7 @@ class _LateGroup(click.Group):
 
 def _show_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted:
-        from isocore import __version__
+        from isocore.version import __version__
 
         click.echo(f"isocore {__version__}")
         context.exit()

@@ -68,7 +68,7 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> Ba
                         say(line)
                 said.update(lines_of(run))
                 if options.verbose:
-                    seconds = run.seconds.get("total", 0.0)
+                    seconds = run.seconds.total if run.seconds else 0.0
                     say(f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s")
         finally:
             records.save()

@@ -12,6 +12,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from isocore.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from isocore.backends import BACKENDS, Backend, Extraction, extract
     from isocore.cell_mesh import CellMesh
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from isocore.surface import Surface
     from isocore.volume import Volume
     from isocore.writers import write
-
-__version__ = "0.1.0"
 
 __all__ = [
     "BACKENDS",

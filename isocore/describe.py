@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from isocore.backends import Field
+from isocore.cell_mesh import CellMesh
 from isocore.extrema import count_extrema
+from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram, histogram
 from isocore.isovalue import Chosen, suggestions
 from isocore.readers import ReadOptions, count_volumes, offered_fields, read
@@ -43,8 +44,9 @@ def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Descripti
         facts |= {"volumes": volumes, "volume": options.volume}
     source = read(path, options)
     spread = histogram(source, threads=threads)
-    facts |= _volume_facts(source) if isinstance(source, Volume) else _mesh_facts(source)
-    facts |= {"range": spread.range, "nonfinite": spread.nonfinite}
+    known = FieldFacts.of(source, spread)
+    facts |= _volume_facts(source, known) if isinstance(source, Volume) else _mesh_facts(source, known)
+    facts |= {"range": known.range, "nonfinite": known.nonfinite}
     facts["warnings"] = list(source.warnings)
     return Description(facts, spread, suggestions(spread))
 
@@ -62,32 +64,31 @@ def _choose_field(offered: tuple[FieldInfo, ...], options: ReadOptions, facts: d
     return options
 
 
-def _volume_facts(volume: Volume) -> dict[str, Any]:
+def _volume_facts(volume: Volume, known: FieldFacts) -> dict[str, Any]:
     letters, oblique = orientation(volume)
     return {
-        "kind": "volume",
-        "shape": volume.shape,
-        "dtype": volume.samples.dtype.name,
+        "kind": known.kind,
+        "shape": known.shape,
+        "dtype": known.dtype,
         "slope": volume.slope,
         "intercept": volume.intercept,
-        "spacing": volume.spacing,
-        "unit": volume.unit,
-        "space": volume.space,
+        "spacing": known.spacing,
+        "unit": known.unit,
+        "space": known.space,
         "orientation": letters,
         "oblique": oblique,
     }
 
 
-def _mesh_facts(mesh: Field) -> dict[str, Any]:
-    assert not isinstance(mesh, Volume)
+def _mesh_facts(mesh: CellMesh, known: FieldFacts) -> dict[str, Any]:
     minima, maxima = count_extrema(mesh)
     return {
-        "kind": "mesh",
+        "kind": known.kind,
         "points": len(mesh.points),
         "cells": mesh.cell_counts,
-        "field": mesh.field_name,
-        "dtype": mesh.values.dtype.name,
-        "unit": mesh.unit,
+        "field": known.field,
+        "dtype": known.dtype,
+        "unit": known.unit,
         "bounds": [mesh.points.min(axis=0).tolist(), mesh.points.max(axis=0).tolist()],
         "minima": minima,
         "maxima": maxima,

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from isocore.cell_mesh import CellMesh
 from isocore.surface import Surface
 from isocore.volume import Volume
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 Field = Volume | CellMesh
 
@@ -26,13 +29,89 @@ class Outlook:
     index: Path | None = None
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deviation:
+    """How far the reference's vertices lie from the surface: largest, mean and root mean square.
+
+    In voxels, and in the world in `unit`; bound: what was asked for, as it was written.
+    """
+
+    max: float
+    mean: float
+    rms: float
+    max_world: float
+    mean_world: float
+    rms_world: float
+    unit: str
+    bound: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Search:
+    """How the cells that a surface passes through were found, in numbers of cells; None where a method has none.
+
+    extrema: points that are local extrema; skeleton: cells of the thinned field; seeds: where walks started.
+    """
+
+    cells: int
+    extrema: int | None = None
+    skeleton: int | None = None
+    seeds: int | None = None
+    visited: int
+    intersected: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ambiguous:
+    """Cell faces and cells where the samples allow two surfaces; tubes: pairs of loops that were joined by one."""
+
+    faces: int
+    cells: int
+    tubes: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Climbing:
+    """What became of the blocks. highrices: boxes that got triangles; split_again: those that broke the bound."""
+
+    highrices: int
+    split_again: int
+    blocks: int
+    blocks_visited: int
+    blocks_skipped: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Findings:
+    """What a method has to say about one surface, by the report's keys; facts: what no other key covers."""
+
+    error: Deviation | None = None
+    search: Search | None = None
+    ambiguous: Ambiguous | None = None
+    climbing: Climbing | None = None
+    facts: dict[str, Any] = field(default_factory=dict)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Extraction:
-    """A surface in the world, and what its method has to say about it, by the report's keys."""
+    """A surface in the world, and what its method has to say about it."""
 
     surface: Surface
-    facts: dict[str, Any] = field(default_factory=dict)
+    findings: Findings = field(default_factory=Findings)
     warnings: tuple[str, ...] = ()
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The findings as they stand in the report; what there is nothing to say about is left out."""
+        found = self.findings
+        parts = {"error": found.error, "search": found.search, "ambiguous": found.ambiguous, "climbing": found.climbing}
+        return {key: keys_of(part) for key, part in parts.items() if part is not None} | found.facts
 
 
 Extract = Callable[[float], Extraction]
+
+
+def keys_of(section: DataclassInstance) -> dict[str, Any]:
+    """A section of the report by its keys; a field whose default is None is left out where it is None."""
+    values = ((item, getattr(section, item.name)) for item in fields(section))
+    return {item.name: value for item, value in values if value is not None or item.default is not None}

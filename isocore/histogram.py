@@ -21,6 +21,15 @@ BINS = 4096
 EXACT_RANGE = 65536
 
 
+@dataclass(frozen=True, slots=True)
+class Bars:
+    """Equal bins for drawing, in the scale of the values. low, high: their ends, None without a finite sample."""
+
+    low: float | None
+    high: float | None
+    counts: tuple[int, ...]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Histogram:
     """Counts of the finite samples.
@@ -65,10 +74,10 @@ class Histogram:
         """The value of a stored sample."""
         return self.slope * stored + self.intercept
 
-    def coarse(self, bins: int = 64) -> dict[str, Any]:
-        """At most `bins` equal bins over the range of values, for drawing: low, high, counts."""
+    def coarse(self, bins: int = 64) -> Bars:
+        """At most `bins` equal bins over the range of values, for drawing."""
         if not self.finite:
-            return {"low": None, "high": None, "counts": []}
+            return Bars(None, None, ())
         ends = self.range or (0.0, 0.0)
         step = -(-len(self.counts) // bins)
         padded = np.zeros(-(-len(self.counts) // step) * step, np.uint64)
@@ -80,10 +89,10 @@ class Histogram:
         else:
             low = self.minimum
         if high <= low:
-            return {"low": ends[0], "high": ends[1], "counts": counts.tolist()}
+            return Bars(*ends, tuple(counts.tolist()))
         low, high = self.scaled(low), self.scaled(high)
         ordered = counts if low <= high else counts[::-1]
-        return {"low": min(low, high), "high": max(low, high), "counts": ordered.tolist()}
+        return Bars(min(low, high), max(low, high), tuple(ordered.tolist()))
 
 
 def histogram(field: Volume | CellMesh, *, threads: int = 1) -> Histogram:

@@ -3,121 +3,124 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from hashlib import sha256
-from pathlib import Path
-from time import perf_counter
-from typing import Any, BinaryIO, ParamSpec, TypeVar, cast
+from typing import Any, BinaryIO, cast
 
-from isocore import compose
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
 from isocore.errors import FieldError, IsocoreError, OptionError, writing
+from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
 from isocore.job import STDOUT, Job, Options, Target
-from isocore.measurements import measure
+from isocore.measurements import Measurements, measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.readers import read
 from isocore.report.record import RunReport
+from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds, Written
+from isocore.requirements import missed
 from isocore.surface import Surface
+from isocore.timer import Timer
 from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import writer_for
 from isocore.writers.ply import write_ply_points
 
-P = ParamSpec("P")
-T = TypeVar("T")
-
 REFERENCE = "mc"
-STAGES = ("read", "prepare", "extract", "measure", "write")
-
-
-class Timer:
-    """Seconds per stage. What a job pays once stands in its first record only."""
-
-    def __init__(self) -> None:
-        self._seconds = dict.fromkeys(STAGES, 0.0)
-
-    def timed(self, stage: str, work: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Do the work and add its seconds to the stage."""
-        start = perf_counter()
-        try:
-            return work(*args, **kwargs)
-        finally:
-            self._seconds[stage] += perf_counter() - start
-
-    def taken(self) -> dict[str, float]:
-        """The seconds since the last call, by stage, and their total."""
-        seconds, self._seconds = self._seconds, dict.fromkeys(STAGES, 0.0)
-        return {**seconds, "total": sum(seconds.values())}
 
 
 def convert(job: Job) -> Iterator[RunReport]:
     """Read and prepare once, then extract, measure and write each target; one report per target, failed ones too."""
     forget_peak()
-    timer = Timer()
+    timer, threads = Timer(), job.options.threads
     done = 0
     try:
-        source = timer.timed("read", _read, job)
-        spread = timer.timed("read", histogram, source, threads=job.options.threads)
+        with timer("read"):
+            source = _read(job)
+            spread = histogram(source, threads=threads)
+        known = FieldFacts.of(source, spread)
         backend = job.backend or default_backend(type(source))
-        extract = timer.timed("prepare", prepare, source, backend, job.options, _outlook(job))
-        reference = _Reference(source, backend, job)
-        known = compose.field_parts(source, spread) | {"backend": backend}
+        with timer("prepare"):
+            extract = prepare(source, backend, job.options, _outlook(job))
+        reference = _ReferenceRuns(source, backend, job)
         for target in job.targets:
             try:
-                chosen = timer.timed("prepare", choose, target.choice, spread)
-                found = timer.timed("extract", extract, chosen.isovalue)
-                measured = timer.timed("measure", measure, found.surface, threads=job.options.threads)
-                written = timer.timed("write", _write, found.surface, target.output, job)
-                timer.timed("write", _write_ambiguities, source, chosen.isovalue, job)
+                with timer("prepare"):
+                    chosen = choose(target.choice, spread)
+                with timer("extract"):
+                    found = extract(chosen.isovalue)
+                with timer("measure"):
+                    measured = measure(found.surface, threads=threads)
+                with timer("write"):
+                    written, doubts = _write(found.surface, target, job)
+                    _write_ambiguities(source, chosen.isovalue, job)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
-                parts = known | compose.surface_parts(found, measured, chosen, known)
-                parts["warnings"] = known["warnings"] + parts["warnings"] + written.warnings
                 run = RunReport(
-                    **(_asked(job, target) | parts),
-                    sha256=written.hexdigest(),
-                    bytes=written.bytes,
+                    asked=_asked(job, target),
+                    status="done" if measured.triangles else "empty",
+                    message="" if measured.triangles else _emptiness(chosen.isovalue, known),
+                    warnings=source.warnings + known.warnings + found.warnings + _border(measured, known) + doubts,
+                    written=written,
+                    field=known,
+                    isovalue=chosen.isovalue,
+                    chosen=chosen.why,
+                    backend=backend,
+                    surface=measured,
+                    findings=found.findings,
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
                 del found
-                run = reference.compared(run)
-                yield replace(run, missed=compose.missed(run, job.require, job.max_triangles))
+                yield requirements_checked(reference.compared(run), job)
             done += 1
     except (IsocoreError, MemoryError) as error:
         for target in job.targets[done:]:
             yield failed(job, target, error, seconds=timer.taken())
 
 
-def _outlook(job: Job) -> Outlook:
-    index = index_path(job.source)
-    return Outlook(isovalues=len(job.targets), index=index if index.is_file() else None)
-
-
-def failed(job: Job, target: Target, error: BaseException, *, seconds: dict[str, float]) -> RunReport:
+def failed(job: Job, target: Target, error: BaseException, *, seconds: Seconds | None = None) -> RunReport:
     """The record of a target that came to nothing; its message starts with a path."""
     text = "does not fit into memory; free some or crop the data" if isinstance(error, MemoryError) else str(error)
     paths = (str(job.source), str(target.output))
-    message = text if text.startswith(paths) else f"{job.source}: {text}"
-    asked = _asked(job, target) | {"backend": job.backend}
-    return RunReport(**asked, status="failed", message=message, seconds=seconds, peak_rss_bytes=peak_bytes())
+    return RunReport(
+        asked=_asked(job, target),
+        status="failed",
+        message=text if text.startswith(paths) else f"{job.source}: {text}",
+        backend=job.backend,
+        seconds=seconds,
+        peak_rss_bytes=peak_bytes(),
+    )
 
 
-def _asked(job: Job, target: Target) -> dict[str, Any]:
-    return {
-        "source": str(job.source),
-        "output": str(target.output),
-        "asked": str(target.choice),
-        "volume": job.read_options.volume,
-        "options": compose.options_part(job.options, format=job.format, space=job.space),
-    }
+def requirements_checked(run: RunReport, job: Job) -> RunReport:
+    """The run with what the job requires and its surface misses."""
+    return run if run.surface is None else replace(run, missed=missed(run.surface, job.require, job.max_triangles))
+
+
+def _asked(job: Job, target: Target) -> Asked:
+    options = job.options
+    return Asked(
+        source=str(job.source),
+        output=str(target.output),
+        asked=str(target.choice),
+        volume=job.read_options.volume,
+        options=Given(
+            threads=options.threads,
+            cap=options.cap,
+            normals=options.normals,
+            block_size=options.block_size,
+            max_error=None if options.max_error is None else str(options.max_error),
+            topology=options.topology,
+            format=job.format,
+            space=job.space,
+        ),
+    )
 
 
 def _read(job: Job) -> Field:
@@ -129,36 +132,54 @@ def _read(job: Job) -> Field:
     return source
 
 
-class _Written:
+def _outlook(job: Job) -> Outlook:
+    index = index_path(job.source)
+    return Outlook(isovalues=len(job.targets), index=index if index.is_file() else None)
+
+
+def _emptiness(isovalue: float, known: FieldFacts) -> str:
+    low, high = known.range or (float("nan"), float("nan"))
+    return f"no surface at isovalue {isovalue:g}; the samples lie between {low:g} and {high:g}"
+
+
+def _border(measured: Measurements, known: FieldFacts) -> tuple[str, ...]:
+    """A warning where a volume's surface is open, which it is only at the volume's border."""
+    edges = measured.boundary_edges
+    if known.kind != "volume" or not edges:
+        return ()
+    return (f"the surface is open where it meets the volume's border ({edges:,} edges); --cap closes it",)
+
+
+class _Hashed:
     """A stream that keeps the hash and the length of what passes."""
 
     def __init__(self, stream: BinaryIO) -> None:
         self._stream = stream
         self._hash = sha256()
-        self.bytes = 0
-        self.warnings: tuple[str, ...] = ()
+        self._bytes = 0
 
     def write(self, data: Any) -> int:
         """Pass the data on."""
         self._hash.update(data)
-        self.bytes += memoryview(data).nbytes
+        self._bytes += memoryview(data).nbytes
         return self._stream.write(data)
 
-    def hexdigest(self) -> str:
-        """The sha256 of everything so far."""
-        return self._hash.hexdigest()
+    def written(self) -> Written:
+        """Hash and length of everything so far."""
+        return Written(sha256=self._hash.hexdigest(), bytes=self._bytes)
 
 
-def _write(surface: Surface, target: Path, job: Job) -> _Written:
-    """Write to the target and hash what is written on its way."""
-    writer = writer_for(target, job.format)
-    place: AbstractContextManager[BinaryIO | None] = writing("stdout") if target == STDOUT else whole_file(target)
+def _write(surface: Surface, target: Target, job: Job) -> tuple[Written, tuple[str, ...]]:
+    """Write to the target and hash what is written on its way; also the writer's warnings."""
+    writer = writer_for(target.output, job.format)
+    to_stdout = target.output == STDOUT
+    place: AbstractContextManager[BinaryIO | None] = writing("stdout") if to_stdout else whole_file(target.output)
     with place as opened:
-        written = _Written(opened or sys.stdout.buffer)
-        written.warnings = writer(cast(BinaryIO, written), surface, job.options.threads)
-        if target == STDOUT:
+        stream = _Hashed(opened or sys.stdout.buffer)
+        warnings = writer(cast(BinaryIO, stream), surface, job.options.threads)
+        if to_stdout:
             sys.stdout.buffer.flush()
-    return written
+    return stream.written(), warnings
 
 
 def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
@@ -173,25 +194,39 @@ def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
         )
 
 
-class _Reference:
+class _ReferenceRuns:
     """Marching cubes on the same field, prepared at the first target that needs it."""
 
     def __init__(self, source: Field, backend: str, job: Job) -> None:
         self._source, self._backend = source, backend
         self._options = Options(threads=job.options.threads, cap=job.options.cap)
         self._wanted = job.reference and isinstance(source, BACKENDS[REFERENCE].accepts)
-        self._timer = Timer()
         self._extract: Extract | None = None
 
     def compared(self, run: RunReport) -> RunReport:
         """The run beside the reference; where it is the reference itself nothing is extracted again."""
-        if not self._wanted or run.isovalue is None or run.surface is None:
+        if not self._wanted or run.isovalue is None or run.surface is None or run.seconds is None:
             return run
+        own_seconds = run.seconds.prepare + run.seconds.extract
         if self._backend == REFERENCE:
-            seconds = run.seconds["prepare"] + run.seconds["extract"]
-            return compose.with_reference(run, REFERENCE, run.surface["triangles"], run.surface["vertices"], seconds)
+            triangles, vertices, seconds = run.surface.triangles, run.surface.vertices, own_seconds
+        else:
+            triangles, vertices, seconds = self._extracted(run.isovalue)
+        return replace(
+            run,
+            reference=Reference(name=REFERENCE, triangles=triangles, vertices=vertices, seconds=seconds),
+            ratio=Ratio(
+                triangles=triangles / run.surface.triangles if run.surface.triangles else None,
+                seconds=own_seconds / seconds if seconds else None,
+            ),
+        )
+
+    def _extracted(self, isovalue: float) -> tuple[int, int, float]:
+        """Triangles, vertices, and the seconds they took; those of the first call include the preparation."""
+        timer = Timer()
         if self._extract is None:
-            self._extract = self._timer.timed("prepare", prepare, self._source, REFERENCE, self._options)
-        surface = self._timer.timed("extract", self._extract, run.isovalue).surface
-        seconds = self._timer.taken()["total"]
-        return compose.with_reference(run, REFERENCE, len(surface.triangles), len(surface.vertices), seconds)
+            with timer("prepare"):
+                self._extract = prepare(self._source, REFERENCE, self._options)
+        with timer("extract"):
+            surface = self._extract(isovalue).surface
+        return len(surface.triangles), len(surface.vertices), timer.taken().total

@@ -18,8 +18,8 @@ def missed(surface: Measurements, require: tuple[str, ...], max_triangles: int |
     misses = []
     if "watertight" in require and not surface.watertight:
         misses.append(f"watertight: {surface.boundary_edges:,} open edges")
-    if "manifold" in require and not surface.manifold:
-        edges, vertices = surface.nonmanifold_edges, surface.nonmanifold_vertices
+    edges, vertices = surface.nonmanifold_edges, surface.nonmanifold_vertices
+    if "manifold" in require and (edges or vertices):
         misses.append(f"manifold: {edges:,} edges and {vertices:,} vertices are not")
     if "nonempty" in require and not surface.triangles:
         misses.append("nonempty: no triangles")

@@ -20,7 +20,7 @@ from small_files import ball, write_nifti
 from isocore.batches.leftovers import remove_parts
 from isocore.batches.run import Batch, estimate, run_jobs
 from isocore.batches.stamps import stamp_path
-from isocore.pipeline import Job, Target
+from isocore.job import Job, Target
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "convert"]
 FAST = ("-i", "50", "-b", "mc", "-q")

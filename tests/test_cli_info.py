@@ -16,6 +16,7 @@ from small_files import ball, write_nifti
 from isocore.cell_mesh import CellMesh
 from isocore.describe import orientation
 from isocore.extrema import count_extrema
+from isocore.histogram import Bars
 from isocore.volume import Space, Volume
 
 
@@ -98,6 +99,6 @@ def test_orientation_names_all_48_ways(space: Space) -> None:
 
 def test_a_histogram_is_drawn_in_the_width_it_has() -> None:
     """Every bin a column, rare values still visible."""
-    lines = drawn({"low": 0.0, "high": 4.0, "counts": [1_000_000, 0, 1, 5]})
+    lines = drawn(Bars(0.0, 4.0, (1_000_000, 0, 1, 5)))
     assert len(lines) == 7 and all(len(line) <= 6 for line in lines[:-1])
     assert lines[0].strip() == "█" and lines[-2][4] != " " and lines[-2][3] == " "

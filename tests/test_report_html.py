@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 from small_files import ball, write_nifti
 
-from isocore.pipeline import Job, Target, convert
-from isocore.report import BatchReport, save_report
+from isocore.job import Job, Target
+from isocore.pipeline import convert
+from isocore.report import BatchReport, RunReport, save_report
 from isocore.report.mesh_files import read_mesh
 from isocore.report.reduce import packed, reduced
 
@@ -87,8 +88,8 @@ def looked_at(page: Path) -> dict[str, Any]:
 def test_the_page_opens_sorts_and_draws(tmp_path: Path) -> None:
     """Offline, with two hundred rows, without an error."""
     runs = surfaces(tmp_path)
-    many = [replace(runs[n % 3], output=f"{tmp_path}/ball_{('30', '50', '80')[n % 3]}.ply") for n in range(ROWS - 2)]
-    failed = replace(runs[0], status="failed", message="</script><b>broken", surface=None, output="x.ply")
+    many = [renamed(runs[n % 3], f"{tmp_path}/ball_{('30', '50', '80')[n % 3]}.ply") for n in range(ROWS - 2)]
+    failed = replace(renamed(runs[0], "x.ply"), status="failed", message="</script><b>broken", surface=None)
     save_report(BatchReport((*many, runs[3], failed)), tmp_path / "run.html", mesh_bytes=4 << 20)
     found = looked_at(tmp_path / "run.html")
     assert found["errors"] == [] and found["rows"] == ROWS and found["attention"]
@@ -105,6 +106,10 @@ def test_the_page_needs_nothing_from_outside(tmp_path: Path) -> None:
     save_report(BatchReport(tuple(surfaces(tmp_path))), tmp_path / "run.html")
     text = (tmp_path / "run.html").read_text(encoding="utf-8")
     assert "default-src 'none'" in text and not re.search(r"<(script|link|img)[^>]+(src|href)=", text)
+
+
+def renamed(run: RunReport, output: str) -> RunReport:
+    return replace(run, asked=replace(run.asked, output=output))
 
 
 @pytest.mark.parametrize("limit", [0, 3000, 100_000])
@@ -125,8 +130,8 @@ def test_our_own_outputs_are_read_back(tmp_path: Path, form: str) -> None:
     (run,) = convert(Job(source=source, targets=(Target("50", tmp_path / f"b.{form}"),), backend="mc", format=form))
     mesh = read_mesh(tmp_path / f"b.{form}")
     assert mesh is not None and run.surface is not None
-    assert (len(mesh[0]), len(mesh[1])) == (run.surface["vertices"], run.surface["triangles"])
-    assert np.allclose([mesh[0].min(axis=0), mesh[0].max(axis=0)], run.surface["bounds"], atol=1e-5)
+    assert (len(mesh[0]), len(mesh[1])) == (run.surface.vertices, run.surface.triangles)
+    assert np.allclose([mesh[0].min(axis=0), mesh[0].max(axis=0)], run.surface.bounds, atol=1e-5)
 
 
 def test_a_reduced_copy_keeps_the_shape(tmp_path: Path) -> None:

@@ -61,11 +61,12 @@ def _as_named(job: Job, runs: list[RunReport]) -> list[RunReport]:
     named = []
     for target, run in zip(job.targets, runs, strict=True):
         message = run.message.replace(run.source, str(job.source)).replace(run.output, str(target.output))
-        named.append(replace(run, source=str(job.source), output=str(target.output), message=message))
+        asked = replace(run.asked, source=str(job.source), output=str(target.output))
+        named.append(replace(run, asked=asked, message=message))
     return named
 
 
 def _lost(job: Job, error: BaseException | None) -> list[RunReport]:
     remove_parts(target.output for target in job.targets)
     why = f"its workers on the cluster were lost ({one_line(error) if error else 'cancelled'}); see the scheduler's log"
-    return [failed(job, target, RuntimeError(why), seconds={}) for target in job.targets]
+    return [failed(job, target, RuntimeError(why)) for target in job.targets]

@@ -6,13 +6,12 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 
-from isocore import compose
 from isocore.batches import stamps
 from isocore.batches.leftovers import remove_parts
 from isocore.errors import one_line
 from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
-from isocore.pipeline import convert, failed
+from isocore.pipeline import convert, failed, requirements_checked
 from isocore.readers import content_bytes
 from isocore.report.record import RunReport
 
@@ -83,7 +82,7 @@ def guarded(job: Job) -> Iterator[RunReport]:
         what = f"internal error ({type(error).__name__}: {one_line(error)}); please report it"
         unforeseen = RuntimeError(f"{job.source}: {what}")
         for target in job.targets[done:]:
-            yield failed(job, target, unforeseen, seconds={})
+            yield failed(job, target, unforeseen)
 
 
 def _changed(job: Job) -> Iterator[RunReport]:
@@ -96,8 +95,7 @@ def _changed(job: Job) -> Iterator[RunReport]:
         if earlier is None:
             left.append(target)
         else:
-            missed = compose.missed(earlier, job.require, job.max_triangles)
-            skipped[target] = replace(earlier, status="skipped", message="up to date", missed=missed)
+            skipped[target] = requirements_checked(replace(earlier, status="skipped", message="up to date"), job)
     made = convert(replace(job, targets=tuple(left))) if left else iter(())
     for target in job.targets:
         if target in skipped:

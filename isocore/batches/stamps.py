@@ -12,10 +12,11 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
-from isocore import __version__
 from isocore.job import STDOUT, Job, Options, Target
 from isocore.readers import files_of
-from isocore.report.record import RunReport, run_as_dict, run_from_dict
+from isocore.report.keys import run_as_dict, run_from_dict
+from isocore.report.record import RunReport
+from isocore.version import __version__
 from isocore.whole_file import whole_file
 
 #: The first keys of a stamp's options. The last two stopped being options; they stay, so that the stamps of earlier

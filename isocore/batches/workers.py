@@ -176,4 +176,4 @@ def _lost(worker: Worker, limits: Limits) -> Iterator[tuple[Job, RunReport]]:
         why = f"took longer than {limits.seconds:g} s; allow more with --timeout"
     remove_parts(target.output for target in job.targets)
     for target in job.targets[worker.runs :]:
-        yield job, failed(job, target, RuntimeError(why), seconds={})
+        yield job, failed(job, target, RuntimeError(why))

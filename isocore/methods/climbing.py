@@ -15,7 +15,7 @@ import numpy as np
 from isocore import _kernels
 from isocore.choices import BLOCK_SIZES, MILLIMETRES, MaxError, Unbounded, Voxels
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Outlook
+from isocore.extraction import Ambiguous, Climbing, Deviation, Extract, Extraction, Findings, Outlook
 from isocore.job import Options
 from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
@@ -59,7 +59,7 @@ def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extr
             ranges=ranges,
         )
         surface = placed_surface(volume, climbed.vertices, climbed.triangles, options)
-        return Extraction(surface, climbing_facts(climbed.facts, bound, volume.unit))
+        return Extraction(surface, climbing_findings(climbed.facts, bound, volume.unit))
 
     return extract
 
@@ -95,18 +95,26 @@ def bound_for(volume: Volume, asked: MaxError) -> Bound:
     return Bound(distance / stretch, True, asked.text)
 
 
-def climbing_facts(facts: _kernels.ClimbingFacts, bound: Bound, unit: str) -> dict[str, Any]:
+def climbing_findings(facts: _kernels.ClimbingFacts, bound: Bound, unit: str) -> Findings:
     """The kernel's facts by the report's keys."""
-    error: dict[str, Any] = facts.error_voxels._asdict()
-    error |= {f"{name}_world": value for name, value in facts.error_world._asdict().items()}
-    return {
-        "error": error | {"unit": unit, "bound": bound.text},
-        "ambiguous": {"faces": facts.ambiguous_faces, "cells": facts.ambiguous_cells},
-        "climbing": {
-            "highrices": facts.highrices,
-            "split_again": facts.split_again,
-            "blocks": facts.blocks,
-            "blocks_visited": facts.blocks_visited,
-            "blocks_skipped": facts.blocks - facts.blocks_visited,
-        },
-    }
+    voxels, world = facts.error_voxels, facts.error_world
+    return Findings(
+        error=Deviation(
+            max=voxels.max,
+            mean=voxels.mean,
+            rms=voxels.rms,
+            max_world=world.max,
+            mean_world=world.mean,
+            rms_world=world.rms,
+            unit=unit,
+            bound=bound.text,
+        ),
+        ambiguous=Ambiguous(faces=facts.ambiguous_faces, cells=facts.ambiguous_cells),
+        climbing=Climbing(
+            highrices=facts.highrices,
+            split_again=facts.split_again,
+            blocks=facts.blocks,
+            blocks_visited=facts.blocks_visited,
+            blocks_skipped=facts.blocks - facts.blocks_visited,
+        ),
+    )

@@ -7,7 +7,7 @@ is three to four times slower than marching cubes; isocore/kernels/thinning/grid
 from __future__ import annotations
 
 from isocore import _kernels
-from isocore.extraction import Extract, Extraction
+from isocore.extraction import Ambiguous, Extract, Extraction, Findings, Search
 from isocore.job import Options
 from isocore.methods.marching_cubes import placed_surface
 from isocore.volume import Volume
@@ -20,14 +20,20 @@ def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
     """Thin the volume now; then walk for every isovalue. With `options.cap` it counts as surrounded by the outside."""
     index = _kernels.GridIndex(volume.samples, volume.inside_is_below, options.cap)
     advice = _advice(index)
-    known = {"cells": index.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
         walked = index.propagate(volume.stored_isovalue(isovalue), options.threads)
         surface = placed_surface(volume, walked.vertices, walked.triangles, options)
-        search = {**known, "seeds": walked.seeds, "visited": walked.visited, "intersected": walked.visited}
-        ambiguous = {"faces": walked.ambiguous_faces, "cells": walked.ambiguous_cells}
-        return Extraction(surface, {"search": search, "ambiguous": ambiguous}, advice)
+        search = Search(
+            cells=index.cells,
+            extrema=index.extrema,
+            skeleton=index.skeleton_cells,
+            seeds=walked.seeds,
+            visited=walked.visited,
+            intersected=walked.visited,
+        )
+        ambiguous = Ambiguous(faces=walked.ambiguous_faces, cells=walked.ambiguous_cells)
+        return Extraction(surface, Findings(search=search, ambiguous=ambiguous), advice)
 
     return extract
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.extraction import Extract, Extraction
+from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
 from isocore.surface import Surface
 
@@ -32,8 +32,8 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single
         )
         surface = mesh_surface(mesh, marched.vertices, marched.triangles, normals=options.normals)
-        facts = {"search": {"cells": mesh.cells, "visited": mesh.cells, "intersected": marched.intersected}}
-        return Extraction(surface, facts, warnings)
+        search = Search(cells=mesh.cells, visited=mesh.cells, intersected=marched.intersected)
+        return Extraction(surface, Findings(search=search), warnings)
 
     return extract
 

@@ -14,7 +14,7 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.choices import TOPOLOGIES
 from isocore.errors import OptionError
-from isocore.extraction import Extract, Extraction, Field, Outlook
+from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
 from isocore.methods.marching_cells import prepare_marching_cells
 from isocore.surface import Surface, place_fresh
@@ -38,10 +38,9 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
             volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
         )
         surface = placed_surface(volume, marched.vertices, marched.triangles, options)
-        ambiguous = {"faces": marched.ambiguous_faces, "cells": marched.ambiguous_cells}
-        if trilinear:
-            ambiguous["tubes"] = marched.tubes
-        return Extraction(surface, {"ambiguous": ambiguous})
+        tubes = marched.tubes if trilinear else None
+        ambiguous = Ambiguous(faces=marched.ambiguous_faces, cells=marched.ambiguous_cells, tubes=tubes)
+        return Extraction(surface, Findings(ambiguous=ambiguous))
 
     return extract
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, IsocoreError
-from isocore.extraction import Extract, Extraction, Field, Outlook
+from isocore.extraction import Extract, Extraction, Field, Findings, Outlook, Search
 from isocore.job import Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import load_index
@@ -38,13 +38,19 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
     index, ready, warnings = _index_of(mesh, outlook)
     warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
     single = single_precision(mesh)
-    known = {"cells": mesh.cells, "extrema": index.extrema, "skeleton": index.skeleton_cells}
 
     def extract(isovalue: float) -> Extraction:
         walked = ready.propagate(isovalue, options.threads, single=single)
         surface = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
-        search = {**known, "seeds": walked.seeds, "visited": walked.visited, "intersected": walked.visited}
-        return Extraction(surface, {"search": search}, warnings)
+        search = Search(
+            cells=mesh.cells,
+            extrema=index.extrema,
+            skeleton=index.skeleton_cells,
+            seeds=walked.seeds,
+            visited=walked.visited,
+            intersected=walked.visited,
+        )
+        return Extraction(surface, Findings(search=search), warnings)
 
     return extract
 

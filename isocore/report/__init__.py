@@ -10,15 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from isocore.errors import InputError, OptionError, one_line, reading
-from isocore.report.record import (
-    SCHEMA,
-    BatchReport,
-    RunReport,
-    batch_as_dict,
-    batch_from_dict,
-    run_as_dict,
-    run_from_dict,
-)
+from isocore.report.keys import SCHEMA, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
+from isocore.report.record import BatchReport, RunReport
 from isocore.report.render_benchmark import render_benchmark
 from isocore.report.render_csv import render_csv
 from isocore.report.render_github import github_annotations
@@ -78,7 +71,7 @@ def merged(batches: list[BatchReport]) -> BatchReport:
     """Several reports as one; of two runs with the same output the later one stays."""
     if len(batches) == 1:
         return batches[0]
-    runs = {(run.output, run.source, run.asked): run for batch in batches for run in batch.outputs}
+    runs = {(run.output, run.source, run.asked.asked): run for batch in batches for run in batch.outputs}
     first = batches[0]
     return BatchReport(
         tuple(runs.values()), first.arguments, sum(batch.seconds for batch in batches), first.tool, first.host

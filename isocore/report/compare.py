@@ -13,7 +13,8 @@ from pathlib import PurePath
 from typing import Any
 
 from isocore.errors import OptionError
-from isocore.report.record import BatchReport, RunReport, run_as_dict
+from isocore.report.keys import run_as_dict
+from isocore.report.record import BatchReport, RunReport
 from isocore.report.summary import own_seconds
 
 _LIMIT = re.compile(r"(?P<key>[\w.]+)\s*(?P<sense>[<>])\s*(?P<number>[+-]?\d+(\.\d*)?(e[+-]?\d+)?)\s*(?P<percent>%?)")
@@ -39,7 +40,7 @@ class Limit:
         bound = self.number if before is None or not self.percent else before * (1 + self.number / 100)
         if not (value > bound if self.above else value < bound):
             return ""
-        now = f"{PurePath(new.output).name} at {new.asked}: {self.key} is {value:,.6g}"
+        now = f"{PurePath(new.output).name} at {new.asked.asked}: {self.key} is {value:,.6g}"
         return f"{now}, was {before:,.6g} ({self.text})" if before is not None else f"{now} ({self.text})"
 
 
@@ -71,7 +72,7 @@ def paired(old: BatchReport, new: BatchReport) -> Iterator[tuple[RunReport | Non
 
 
 def _identity(run: RunReport) -> tuple[Any, ...]:
-    return run.source, run.asked, run.volume
+    return run.source, run.asked.asked, run.asked.volume
 
 
 def broken_limits(old: BatchReport, new: BatchReport, limits: list[Limit]) -> list[str]:
@@ -88,7 +89,7 @@ def comparison_rows(old: BatchReport, new: BatchReport) -> list[tuple[str, ...]]
     """The table on screen, in the order of HEADINGS."""
     rows = []
     for before, run in paired(old, new):
-        cells = [PurePath(run.output).name, run.asked]
+        cells = [PurePath(run.output).name, run.asked.asked]
         for key, form in (("triangles", ",.0f"), ("seconds", ".4f")):
             value, then = value_of(run, key), None if before is None else value_of(before, key)
             cells += ["" if number is None else format(number, form) for number in (value, then)]

@@ -18,11 +18,11 @@ def render_benchmark(batch: BatchReport) -> str:
 def _entries(run: RunReport) -> Iterator[dict[str, Any]]:
     if run.status not in ("done", "empty"):
         return
-    name = f"{run.source} at {run.asked} ({run.backend})"
+    name = f"{run.source} at {run.asked.asked} ({run.backend})"
     values = (
-        ("total", run.seconds.get("total"), "s"),
+        ("total", run.seconds and run.seconds.total, "s"),
         ("prepare and extract", own_seconds(run), "s"),
-        ("triangles", (run.surface or {}).get("triangles"), "triangles"),
+        ("triangles", run.surface and run.surface.triangles, "triangles"),
         ("peak memory", run.peak_rss_bytes, "bytes"),
     )
     for what, value, unit in values:

@@ -6,7 +6,8 @@ import csv
 import io
 from typing import Any
 
-from isocore.report.record import BatchReport, run_as_dict
+from isocore.report.keys import run_as_dict
+from isocore.report.record import BatchReport
 
 _PARTS = {
     "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",

@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from isocore.report.keys import batch_as_dict
 from isocore.report.mesh_files import read_mesh
-from isocore.report.record import BatchReport, RunReport, batch_as_dict
+from isocore.report.record import BatchReport, RunReport
 from isocore.report.reduce import BYTES_PER_TRIANGLE, MOST_TRIANGLES, packed, reduced
 
 #: Bytes of all reduced surfaces together, unless told otherwise.
@@ -19,7 +20,7 @@ _FEWEST_TRIANGLES = 200
 def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
     """The page. mesh_bytes bounds what the copies of the surfaces add to it; 0 leaves them out."""
     record = batch_as_dict(batch)
-    shown = [n for n, run in enumerate(batch.outputs) if (run.surface or {}).get("triangles") and run.output != "-"]
+    shown = [n for n, run in enumerate(batch.outputs) if run.triangles and run.output != "-"]
     left = mesh_bytes
     for place, number in enumerate(shown):
         most = min(left // (len(shown) - place) // BYTES_PER_TRIANGLE, MOST_TRIANGLES)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import json
 from weakref import WeakKeyDictionary
 
-from isocore.report.record import BatchReport, RunReport, batch_as_dict, run_as_dict
+from isocore.report.keys import batch_as_dict, run_as_dict
+from isocore.report.record import BatchReport, RunReport
 
 _LINES: WeakKeyDictionary[RunReport, str] = WeakKeyDictionary()
 

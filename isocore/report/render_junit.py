@@ -41,7 +41,7 @@ def render_junit(batch: BatchReport) -> str:
 
 
 def _names(run: RunReport) -> dict[str, str]:
-    seconds = run.seconds.get("total", 0.0) if run.status != "skipped" else 0.0
+    seconds = run.seconds.total if run.seconds is not None and run.status != "skipped" else 0.0
     return {"name": _clean(run.output), "classname": _clean(run.source), "time": f"{seconds:.3f}"}
 
 

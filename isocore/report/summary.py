@@ -19,16 +19,16 @@ def summary_rows(batch: BatchReport) -> list[tuple[str, ...]]:
 
 def summary_row(run: RunReport) -> tuple[str, ...]:
     """One output's cells, in the order of HEADINGS."""
-    surface, reference, ratio = run.surface or {}, run.reference or {}, run.ratio or {}
-    watertight = surface.get("watertight")
+    surface, reference, ratio = run.surface, run.reference, run.ratio
+    watertight = surface and surface.watertight
     return (
         PurePath(run.output or run.source).name if run.output != "-" else PurePath(run.source).name,
-        run.asked if run.isovalue is None else f"{run.isovalue:.6g}",
-        count(surface.get("triangles")),
-        count(reference.get("triangles")),
-        number(ratio.get("triangles"), ".2f"),
+        run.asked.asked if run.isovalue is None else f"{run.isovalue:.6g}",
+        count(surface and surface.triangles),
+        count(reference and reference.triangles),
+        number(ratio and ratio.triangles, ".2f"),
         number(own_seconds(run), ".3f"),
-        number(reference.get("seconds"), ".3f"),
+        number(reference and reference.seconds, ".3f"),
         "" if watertight is None else "yes" if watertight else "no",
         f"{run.status}, missed" if run.missed else run.status,
     )
@@ -36,9 +36,9 @@ def summary_row(run: RunReport) -> tuple[str, ...]:
 
 def own_seconds(run: RunReport) -> float | None:
     """Seconds to compare with the reference's: prepare and extract."""
-    if run.surface is None or "extract" not in run.seconds:
+    if run.surface is None or run.seconds is None:
         return None
-    return run.seconds.get("prepare", 0.0) + run.seconds["extract"]
+    return run.seconds.prepare + run.seconds.extract
 
 
 def totals_line(batch: BatchReport) -> str:

@@ -1,0 +1,74 @@
+"""The parts of a record that no other room has a type for: what was asked, what was written, what it is set beside.
+
+A field's name is a key of the record; where its default is None, the key is left out of what has no such thing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Given:
+    """What was asked of backend and writer; max_error: as it was written."""
+
+    threads: int
+    cap: bool
+    normals: bool
+    block_size: int | None = None
+    max_error: str | None = None
+    topology: str | None = None
+    format: str
+    space: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """What was asked for: the input and the output as they were named, the isovalue as it was written.
+
+    volume: which of several, from 0.
+    """
+
+    source: str
+    output: str
+    asked: str = ""
+    volume: int | None = None
+    options: Given | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Written:
+    """The output's hash and length."""
+
+    sha256: str
+    bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reference:
+    """Marching cubes on the same field; seconds: prepare and extract."""
+
+    name: str
+    triangles: int
+    vertices: int
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ratio:
+    """Ours beside the reference. triangles: reference / ours; seconds: ours / reference; None over zero."""
+
+    triangles: float | None
+    seconds: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Seconds:
+    """Seconds by stage, and their sum."""
+
+    read: float = 0.0
+    prepare: float = 0.0
+    extract: float = 0.0
+    measure: float = 0.0
+    write: float = 0.0
+    total: float = 0.0
