@@ -34,7 +34,7 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
     start = perf_counter()
     jobs = planned_jobs(options)
     if options.dry_run:
-        from isocore.batches.run import plan_lines
+        from isocore.batches.dry_run import plan_lines
 
         for line in plan_lines(jobs):
             click.echo(line)

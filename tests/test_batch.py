@@ -15,14 +15,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from misbehaving_worker import program
 from small_files import ball, write_nifti
 
-from isocore.batches.leftovers import remove_parts
-from isocore.batches.run import Batch, estimate, run_jobs
+from isocore.batches.one_job import estimate
+from isocore.batches.run import Batch, run_jobs
 from isocore.batches.stamps import stamp_path
 from isocore.job import Job, Target
+from isocore.whole_file import remove_parts
 
-PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "convert"]
+PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()"]
 FAST = ("-i", "50", "-b", "mc", "-q")
 
 
@@ -35,10 +37,9 @@ def scans(tmp_path: Path) -> Path:
     return tmp_path / "scans"
 
 
-def convert(*arguments: object, hook: str = "") -> subprocess.CompletedProcess[str]:
-    command = [*PROGRAM, *map(str, arguments)]
-    environment = {**os.environ, "ISOCORE_TEST_WORKER": hook}
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, env=environment)
+def convert(*arguments: object, rules: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+    command = [*(program(*rules) if rules else PROGRAM), "convert", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -54,9 +55,8 @@ def outputs(report: Path) -> list[dict[str, Any]]:
 def test_a_broken_a_crashing_and_a_killed_input_are_three_rows(scans: Path, tmp_path: Path) -> None:
     """All others are converted, and no half-written file is left."""
     (scans / "a" / "s01.nii.gz").write_bytes(b"junk")
-    hook = "s02=crash,s03=oom"
     report = tmp_path / "run.json"
-    result = convert(scans, "-d", tmp_path / "out", *FAST, "-j", 2, "--report", report, hook=hook)
+    result = convert(scans, "-d", tmp_path / "out", *FAST, "-j", 2, "--report", report, rules=("s02=crash", "s03=oom"))
     assert result.returncode == 1
     failed = {Path(run["source"]).name[:3]: run["message"] for run in outputs(report) if run["status"] == "failed"}
     assert sorted(failed) == ["s01", "s02", "s03"]
@@ -69,7 +69,7 @@ def test_a_hanging_input_is_given_up(scans: Path, tmp_path: Path) -> None:
     """--timeout ends it; the rest goes on."""
     report = tmp_path / "run.json"
     arguments = (scans, "-d", tmp_path / "out", *FAST, "--timeout", 4, "--report", report)
-    assert convert(*arguments, hook="s05=hang").returncode == 1
+    assert convert(*arguments, rules=("s05=hang",)).returncode == 1
     (row,) = (run for run in outputs(report) if run["status"] == "failed")
     assert "longer than 4 s" in row["message"] and len(contents(tmp_path / "out")) == 11
 
@@ -141,7 +141,7 @@ def test_a_killed_run_is_finished_by_the_next(scans: Path, tmp_path: Path) -> No
     chance = random.Random(5)
     for number in range(tries):
         out = tmp_path / f"killed{number}"
-        arguments = [*PROGRAM, str(scans), "-d", str(out), *FAST, "--if-changed", "-j", "2"]
+        arguments = [*PROGRAM, "convert", str(scans), "-d", str(out), *FAST, "--if-changed", "-j", "2"]
         process = subprocess.Popen(arguments, stderr=subprocess.DEVNULL)
         time.sleep(chance.uniform(0.3, 2.5))
         process.kill()
@@ -157,10 +157,9 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
 ) -> None:
     """The report holds what was done until then."""
     report = tmp_path / "run.json"
-    arguments = [*PROGRAM, str(scans), "-d", str(tmp_path / "out"), *FAST, "-j", "2", "--report", str(report)]
-    environment = {**os.environ, "ISOCORE_TEST_WORKER": "s11=hang"}
+    arguments = [str(scans), "-d", str(tmp_path / "out"), *FAST, "-j", "2", "--report", str(report)]
     with _interruptible():
-        process = subprocess.Popen(arguments, stderr=subprocess.DEVNULL, env=environment)
+        process = subprocess.Popen([*program("s11=hang"), "convert", *arguments], stderr=subprocess.DEVNULL)
     try:
         for _ in _polling(60):
             if report.exists() and len(outputs(report)) == 11:

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from isocore.batches.leftovers import remove_parts
+from isocore.batches.one_job import guarded
 from isocore.errors import OptionError, one_line
 from isocore.job import Job
 from isocore.pipeline import failed
 from isocore.report.record import RunReport
+from isocore.whole_file import remove_parts
 
 _CONNECT_SECONDS = "10s"
 
@@ -43,8 +44,6 @@ def run_on_cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[Job, Run
 
 def convert_whole(job: Job) -> list[RunReport]:
     """All records of a job; runs on the cluster."""
-    from isocore.batches.run import guarded
-
     remove_parts(target.output for target in job.targets)
     return list(guarded(job))
 

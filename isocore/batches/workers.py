@@ -1,4 +1,8 @@
-"""Jobs in worker processes: a crash, a kill or a hang of one is its own failed rows, and nobody else's."""
+"""Jobs in worker processes: a crash, a kill or a hang of one is its own failed rows, and nobody else's.
+
+The standard library's process pool does not serve: there one dead process breaks the pool, a job cannot be given up
+after a time, and a job yields one result, while here each surface's record comes as soon as it is made.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +18,14 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Any, BinaryIO, cast
 
-from isocore.batches.leftovers import remove_parts
-from isocore.batches.worker import receive, send
+from isocore.batches.frames import receive, send
 from isocore.job import Job
 from isocore.pipeline import failed
 from isocore.report.record import RunReport
+from isocore.whole_file import remove_parts
 
+#: Starts a worker process.
+COMMAND = (sys.executable, "-P", "-m", "isocore.batches.worker")
 _END_SECONDS = 5.0
 
 
@@ -43,7 +49,7 @@ class Worker:
         self.bytes = 0
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # closed with the worker
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "isocore.batches.worker"],
+            COMMAND,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,

@@ -55,4 +55,4 @@ def writer_for(target: os.PathLike[str] | str, format: str | None = None) -> Wri
     if writer is not None:
         return writer
     seen = f"{format or suffix} is not a format isocore writes" if format or suffix else "has no suffix"
-    raise OptionError(f"{name}: {seen}; choose one of {', '.join(FORMATS)} with --format")
+    raise OptionError(f"{name}: {seen}; choose one of {', '.join(sorted(FORMATS))} with --format")

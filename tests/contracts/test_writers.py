@@ -241,6 +241,11 @@ def test_a_device_is_written_to_and_not_replaced():
     assert stat.S_ISCHR(Path("/dev/full").stat().st_mode)
 
 
+def test_every_format_the_command_offers_has_a_writer():
+    """And no writer is kept from it."""
+    assert tuple(suffix.removeprefix(".") for suffix in writers.WRITERS) == FORMATS
+
+
 @pytest.mark.parametrize(
     ("name", "format", "said"),
     [

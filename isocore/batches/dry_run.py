@@ -1,0 +1,20 @@
+"""What a command would do, and why, without doing it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from isocore.batches import stamps
+from isocore.batches.one_job import estimate
+from isocore.job import Job
+
+
+def plan_lines(jobs: Sequence[Job]) -> Iterator[str]:
+    """What would be done and why, and how much memory it may take: the dry run."""
+    for job in jobs:
+        source_hash = stamps.input_hash(job.source) if job.if_changed else ""
+        for target in job.targets:
+            reason = stamps.reason_to_run(job, target, source_hash)[0] if job.if_changed else "asked for"
+            what = f"run ({reason})" if reason else "skip (up to date)"
+            memory = f", about {estimate(job) / 2**20:,.0f} MiB" if reason else ""
+            yield f"{job.source} -> {target.output}: isovalue {target.choice}, {what}{memory}"

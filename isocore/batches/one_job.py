@@ -1,0 +1,55 @@
+"""One job of a batch: what it may take, its records whatever happens, and none of its work where it is up to date."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from isocore.batches import stamps
+from isocore.readers import content_bytes
+from isocore.errors import one_line
+from isocore.job import STDOUT, Job, Target
+from isocore.memory import estimated_bytes
+from isocore.pipeline import convert, failed, requirements_checked
+from isocore.report.record import RunReport
+
+
+def estimate(job: Job) -> int:
+    """Bytes that a job may take at its peak."""
+    return estimated_bytes(content_bytes(job.source))
+
+
+def guarded(job: Job) -> Iterator[RunReport]:
+    """The records of a job, also where it meets an error nobody foresaw."""
+    done = 0
+    try:
+        for run in _changed(job) if job.if_changed else convert(job):
+            yield run
+            done += 1
+    except Exception as error:
+        what = f"internal error ({type(error).__name__}: {one_line(error)}); please report it"
+        unforeseen = RuntimeError(f"{job.source}: {what}")
+        for target in job.targets[done:]:
+            yield failed(job, target, unforeseen)
+
+
+def _changed(job: Job) -> Iterator[RunReport]:
+    """As convert, but outputs that are up to date are skipped, with the record of the run that made them."""
+    source_hash = stamps.input_hash(job.source)
+    left: list[Target] = []
+    skipped: dict[Target, RunReport] = {}
+    for target in job.targets:
+        _, earlier = stamps.reason_to_run(job, target, source_hash)
+        if earlier is None:
+            left.append(target)
+        else:
+            skipped[target] = requirements_checked(replace(earlier, status="skipped", message="up to date"), job)
+    made = convert(replace(job, targets=tuple(left))) if left else iter(())
+    for target in job.targets:
+        if target in skipped:
+            yield skipped[target]
+            continue
+        run = next(made)
+        if run.status in ("done", "empty") and target.output != STDOUT:
+            stamps.keep_stamp(job, target, source_hash, run)
+        yield run
