@@ -125,6 +125,7 @@ def test_a_negative_slope_turns_the_surface_inside_out(tmp_path: Path) -> None:
         ("--report", "run.txt"),
         ("--require", "beauty"),
         ("--max-error", "-1"),
+        ("--max-error", "1e-1"),
         ("--block-size", "3"),
         ("-b", "mc", "--block-size", "4"),
         ("--shape", "1,2"),
@@ -145,6 +146,15 @@ def test_a_wrong_command_is_refused_before_any_file_is_opened(
         main()
     assert end.value.code == 2
     assert "Traceback" not in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_a_bound_on_the_error_has_one_grammar(tmp_path: Path) -> None:
+    """What the method takes the command line takes, and the report says it in the user's words."""
+    source = write_nifti(tmp_path / "ball.nii", ball())
+    arguments = ("-i", 50, "--max-error", "300um", "-o", tmp_path / "b.ply", "--report", tmp_path / "run.json")
+    assert run(source, *arguments).exit_code == 0
+    found = record(tmp_path / "run.json")
+    assert found["options"]["max_error"] == found["error"]["bound"] == "300um" and found["error"]["max_world"] <= 0.3
 
 
 def test_two_inputs_for_one_output_are_refused(tmp_path: Path) -> None:
