@@ -15,7 +15,8 @@ import pytest
 import isocore
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.extraction import Options
+from isocore.extraction import Outlook
+from isocore.job import Options
 from isocore.methods.index_file import save_index
 from isocore.methods.mesh_index import MeshIndex
 from isocore.methods.thinning import build_index, prepare_thinning, ready_index
@@ -142,6 +143,6 @@ def test_a_loaded_index_that_names_what_is_not_there_is_made_anew(mesh: CellMesh
     path = tmp_path / "mesh.isoindex"
     index = build_index(mesh)
     save_index(path, replace(index, edges=index.edges - 1), mesh)
-    found = prepare_thinning(mesh, Options(index=path, isovalues=2))(0.3)
+    found = prepare_thinning(mesh, Options(), Outlook(index=path, isovalues=2))(0.3)
     assert any("is damaged" in warning and "thinned anew" in warning for warning in found.warnings)
     assert len(found.surface.triangles) == len(ready_index(mesh, index).propagate(0.3).triangles)

@@ -123,8 +123,8 @@ def test_junit_spells_odd_characters_as_ever() -> None:
     """Quotes, ends of lines, what looks like a tag, and what XML cannot hold; the layout is held too."""
     odd = "a'b\"<&> />\n\t\r&#9;\x00"
     held = "a&#x27;b&quot;&lt;&amp;&gt; /&gt;&#10;\t\r&amp;#9;\ufffd"
-    failed = RunReport(source="s", output=odd, status="failed", message=odd, warnings=(odd,), seconds={"total": 0.5})
-    done = RunReport(source="s", output="o", status="done", warnings=("",))
+    failed = run_of(source="s", output=odd, status="failed", message=odd, warnings=[odd], seconds={"total": 0.5})
+    done = run_from_dict({"source": "s", "output": "o", "status": "done", "warnings": [""]})
     assert render_junit(BatchReport((failed, done), seconds=1.0)) == (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<testsuites name="isocore" tests="2" failures="0" errors="1" time="1.000">\n'

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.batches import stamps
-from isocore.readers import content_bytes
 from isocore.errors import one_line
 from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
+from isocore.readers import content_bytes
 from isocore.report.record import RunReport
 
 
