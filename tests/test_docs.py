@@ -69,12 +69,12 @@ def test_the_volume_climbed_by_hand_is_what_the_kernels_make_of_it() -> None:
     """The same boxes, the same vertices to the last bit, the same triangles, the same farthest crossing."""
     block = the_volume.climbed()
     vertices, triangles, facts = _kernels.climb(the_volume.samples(), the_volume.ISOVALUE, False, False, 1, 4)
-    assert facts["highrices"] == len(block.boxes)
+    assert facts.highrices == len(block.boxes)
     places = [block.place(edge) for edge, is_kept in zip(block.crossings, block.kept, strict=True) if is_kept]
     assert np.array_equal(np.array(places, dtype=vertices.dtype), vertices)
     assert turned(by_hand_loops.triangles(block)) == turned(triangles.tolist())
     farthest = max(far for box in block.boxes for _, far in by_hand_loops.deviation(block, box))
-    assert facts["error_voxels"][0] == pytest.approx(farthest, abs=1e-6)
+    assert facts.error_voxels[0] == pytest.approx(farthest, abs=1e-6)
     march, cells = the_volume.marched()
     assert len(_kernels.marching_cubes(the_volume.samples(), the_volume.ISOVALUE)[1]) == len(cells) and all(march.kept)
 
@@ -92,8 +92,8 @@ def test_the_table_of_bounds_is_what_the_kernels_measure() -> None:
     for bound, boxes, triangles, measured in rows:
         most = float("inf") if bound == "none" else float(bound)
         _, drawn, facts = _kernels.climb(the_volume.samples(), the_volume.ISOVALUE, False, False, 1, 4, most)
-        assert (facts["highrices"], len(drawn), facts["split_again"]) == (int(boxes), int(triangles), 0)
-        assert f"{facts['error_voxels'][0]:.3f}" == measured
+        assert (facts.highrices, len(drawn), facts.split_again) == (int(boxes), int(triangles), 0)
+        assert f"{facts.error_voxels.max:.3f}" == measured
 
 
 def examples() -> list[tuple[str, list[str]]]:
