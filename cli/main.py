@@ -47,15 +47,16 @@ class _LateGroup(click.Group):
 
 def _show_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
     if wanted:
+        from isocore import _kernels
         from isocore.version import __version__
 
-        click.echo(f"isocore {__version__}")
+        click.echo(f"isocore {__version__} (kernels: {_kernels.BUILD})")
         context.exit()
 
 
 @click.group(cls=_LateGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
 @click.option(
-    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_show_version, help="Print the version."
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_show_version, help="Print the version, and which kernels run."
 )
 def isocore() -> None:
     """Turn volumes and meshes into isosurfaces, many files at a time, and say what was done.
@@ -79,6 +80,11 @@ def main() -> None:
         click.echo(f"isocore: {error}", err=True)
         code = WRONG_COMMAND
     except IsocoreError as error:
+        click.echo(f"isocore: {error}", err=True)
+        code = FAILED
+    except ImportError as error:
+        if error.name != "isocore._kernels":
+            raise
         click.echo(f"isocore: {error}", err=True)
         code = FAILED
     except (KeyboardInterrupt, click.exceptions.Abort):

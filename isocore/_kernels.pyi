@@ -13,7 +13,7 @@ _Real = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 _Samples = npt.NDArray[Any]  # (nx, ny, nz) in Fortran order, one of volume.SAMPLE_TYPES
 _Bounds = tuple[float, float, float, float, float, float]  # low x, y, z, then high
 
-def supports_v3() -> bool: ...
+BUILD: str  # "v3" or "base": which of the compiled modules these names come from
 
 # Whatever returns several things returns a named tuple. Vertices are (v, 3), triangles (t, 3).
 

@@ -4,7 +4,6 @@
 
 NB_MODULE(ISOCORE_MODULE, module) {
     nanobind::set_leak_warnings(false);  // an index that lives until the interpreter ends is no news for stderr
-    isocore::python::bind_processor(module);
     isocore::python::bind_climbing(module);
     isocore::python::bind_ambiguities(module);
     isocore::python::bind_marching_cubes(module);

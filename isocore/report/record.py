@@ -88,7 +88,7 @@ class BatchReport:
 
 def tool() -> dict[str, Any]:
     """Which program, and which of its compiled modules."""
-    kernels = "x86-64-v3" if getattr(_kernels.supports_v3, "__module__", "").endswith("_v3") else "base"
+    kernels = "x86-64-v3" if _kernels.BUILD == "v3" else _kernels.BUILD
     return {"name": "isocore", "version": __version__, "kernels": kernels}
 
 

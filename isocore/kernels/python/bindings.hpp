@@ -7,7 +7,6 @@
 
 namespace isocore::python {
 
-void bind_processor(nanobind::module_& module);
 void bind_marching_cubes(nanobind::module_& module);
 void bind_surface(nanobind::module_& module);
 void bind_marching_cells(nanobind::module_& module);

@@ -1,0 +1,3 @@
+"""What this processor can run; kernels/processor/module.cpp is where it comes from."""
+
+def supports_v3() -> bool: ...
