@@ -1,27 +1,50 @@
-# isocore: `make` lists what there is. PYTHON chooses the interpreter the environment is made from.
+# isocore: `make` lists what there is. PYTHON chooses the interpreter that the environment is made from; ISOCORE_ISA=all
+# builds the kernels for every processor of this kind, as wheels have them, instead of for this one alone.
 PYTHON  ?= python3
 VENV    ?= .venv
 BIN     := $(VENV)/bin
-READY   := $(VENV)/ready
+PIP     := $(BIN)/python -m pip install --no-build-isolation
 SOURCES := pyproject.toml $(shell find isocore/kernels -type f)
+ISOCORE_ISA ?= native
+export ISOCORE_ISA
+
+# Three steps, each done once: what building needs, isocore with what it needs, what its tests need.
+TOOLS   := $(VENV)/tools
+BUILT   := $(VENV)/built-$(ISOCORE_ISA)
+READY   := $(VENV)/ready-$(ISOCORE_ISA)
+CMAKE   := $(BIN)/cmake -S isocore/kernels -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja
+SHELL   := bash
+.SHELLFLAGS := -o pipefail -c
 
 .PHONY: help develop demo meshes test check lint types kernels bench golden samples dist clean
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
-$(READY): $(SOURCES)
+$(TOOLS):
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -q "scikit-build-core>=0.11" "nanobind>=2.4" "cmake>=3.20" ninja
-	$(BIN)/python -m pip install -q --no-build-isolation -e ".[test]"
+	$(PIP) -q "scikit-build-core>=0.11" "nanobind>=2.4" "cmake>=3.20" ninja
 	touch $@
 
-develop: $(READY)  ## install editable, with everything tests need
+$(BUILT): $(SOURCES) | $(TOOLS)
+	@mkdir -p build && rm -f $(VENV)/built-* $(VENV)/ready-*
+	@echo "Building isocore for instruction set $(ISOCORE_ISA); everything that pip says is in build/log"
+	@$(PIP) -v -e . 2>&1 | tee build/log | sed -unE "$(NINJA)" || { tail -n 40 build/log; exit 1; }
+	touch $@
 
-demo: $(READY)  ## convert every sample into out/ and show the table
+# Of all that pip passes on: ninja's lines, "[done/all] what", and the compiler's errors.
+NINJA := s/^ *(\[[0-9]+\/[0-9]+\]) [A-Z][a-z]+ .* (CMakeFiles\/)?([^ \/]+)(\.dir.*\/([^\/ ]+)\.(o|gch|obj))$$/\1 \3: \5/; s/^ *\[/[/p; /error: /p
+
+$(READY): $(BUILT)
+	$(PIP) -q -e ".[test]"
+	touch $@
+
+develop: $(READY)  ## install editable, with everything that tests need
+
+demo: $(BUILT)  ## convert every sample into out/ and show the table
 	$(BIN)/isocore convert sample_volumes/knot.nii.gz -i 200 -d out
 	$(BIN)/isocore convert sample_volumes -d out --report out/report.json --report out/report.md
 
-meshes: $(READY)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=]: only what changed
+meshes: $(BUILT)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=]: only what changed
 	@$(MAKE) --no-print-directory -f examples/meshes.mk ISOCORE=$(BIN)/isocore
 
 test: $(READY)  ## run all tests
@@ -29,31 +52,33 @@ test: $(READY)  ## run all tests
 
 check: lint types test  ## what a commit must pass
 
-lint: $(READY)  ## format and style
+lint: $(READY)  ## format and style, of Python and of C++
 	$(BIN)/ruff check .
+	find isocore/kernels tests/kernels -name '*.[ch]pp' | xargs $(BIN)/clang-format --dry-run -Werror
+	$(CMAKE) -B build/lint -DISOCORE_ISA=base -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+	find isocore/kernels -name '*.cpp' | xargs -P $$(nproc) -n 4 $(BIN)/clang-tidy -p build/lint --quiet
 
 types: $(READY)  ## mypy, strict
 	$(BIN)/mypy
 
-kernels: $(READY)  ## the kernels' own tests, under sanitizers
-	$(BIN)/cmake -S isocore/kernels -B build/kernels -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspath $(BIN))/ninja \
-	  -DCMAKE_BUILD_TYPE=Debug -DISOCORE_KERNEL_TESTS=ON -DISOCORE_WERROR=ON >/dev/null
+kernels: $(TOOLS)  ## the kernels' own tests, under sanitizers
+	$(CMAKE) -B build/kernels -DCMAKE_BUILD_TYPE=Debug -DISOCORE_KERNEL_TESTS=ON -DISOCORE_WERROR=ON >/dev/null
 	$(BIN)/ninja -C build/kernels
 	build/kernels/kernel_tests
 
-bench: $(READY)  ## time us against the peers, in one process; and the memory
+bench: $(BUILT)  ## time us against the peers, in one process; and the memory
 	$(BIN)/python -m pip install -q ".[bench]" --no-build-isolation --no-deps && $(BIN)/python -m pip install -q vtk scikit-image nilearn
 	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py && $(BIN)/python tests/bench/memory.py
 
-samples: $(READY)  ## make sample_volumes/ again
+samples: $(BUILT)  ## make sample_volumes/ again
 	$(BIN)/python sample_volumes/make.py
 	cd sample_volumes && sha256sum -b *.nii.gz *.nrrd *.raw *.json *.nhdr *.raw.gz *.vtu >SHA256SUMS
 
-golden: $(READY)  ## rewrite the golden counts; the commit says why
+golden: $(BUILT)  ## rewrite the golden counts; the commit says why
 	$(BIN)/python tests/golden/counts.py
 
-dist: $(READY)  ## wheel and sdist, with a look inside
-	$(BIN)/python -m pip install -q build && $(BIN)/python -m build -q
+dist: $(TOOLS)  ## wheel and sdist; the wheel is tried in a new environment, without a compiler
+	rm -rf dist && $(PIP) -q build && ISOCORE_ISA=all $(BIN)/python -m build
 	$(BIN)/python tests/check_wheel.py dist
 
 clean:  ## remove what was built
