@@ -56,7 +56,7 @@ lint: $(READY)  ## format and style, of Python and of C++
 	$(BIN)/ruff check .
 	find isocore/kernels tests/kernels -name '*.[ch]pp' | xargs $(BIN)/clang-format --dry-run -Werror
 	$(CMAKE) -B build/lint -DISOCORE_ISA=base -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
-	find isocore/kernels -name '*.cpp' | xargs -P $$(nproc) -n 4 $(BIN)/clang-tidy -p build/lint --quiet
+	find isocore/kernels -name '*.cpp' | xargs -P 4 -n 4 $(BIN)/clang-tidy -p build/lint --quiet
 
 types: $(READY)  ## mypy, strict
 	$(BIN)/mypy

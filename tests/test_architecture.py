@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
 NOUNS = {"errors", "version", "choices", "volume", "cell_mesh", "surface", "job", "extraction", "measurements"}
-KERNELS = {"_kernels"}
+KERNELS = {"_kernels", "_processor"}
 FIELD_ROOMS = {"histogram", "isovalue", "extrema", "field_facts"}
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}

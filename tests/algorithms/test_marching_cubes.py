@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from shapes import integer_noise, volume_of
 
-from isocore import _kernels
 from isocore.backends import Options, prepare
 from isocore.measurements import measure
 
@@ -101,17 +100,6 @@ def test_rows_of_any_length_are_marched(length: int) -> None:
     """Around the word size nothing is lost and nothing doubled."""
     samples = np.random.default_rng(length).integers(0, 5, (length, 3, 4)).astype(np.int8)
     assert as_rows(vertices_of(samples, 2)) == crossings_by_definition(samples, 2)
-
-
-def test_both_builds_of_the_kernels_give_the_same_bytes() -> None:
-    """The portable build and the one for wide vectors differ in speed only."""
-    samples = np.asfortranarray(np.random.default_rng(4).standard_normal((70, 30, 20)))
-    chosen = _kernels.marching_cubes(samples, 0.1)
-    from isocore import _kernels_base
-
-    portable = _kernels_base.marching_cubes(samples, 0.1)
-    assert chosen[0].tobytes() == portable[0].tobytes()
-    assert chosen[1].tobytes() == portable[1].tobytes()
 
 
 def test_the_ambiguous_faces_are_counted() -> None:

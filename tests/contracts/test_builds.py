@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ import shapes_mesh
 from shapes import integer_noise
 
 import isocore
-from isocore import _kernels, _kernels_base
+from isocore import _kernels, _processor
 from isocore.backends import BACKENDS, Options, prepare
 from isocore.measurements import measure
 from isocore.surface import Surface
@@ -64,9 +65,17 @@ def digests() -> dict[str, str]:
     return found
 
 
-@pytest.mark.skipif(not _kernels_base.supports_v3(), reason="this processor has only one build to run")
+def installed_builds() -> list[str]:
+    return [build for build in ("v3", "base") if find_spec(f"isocore._kernels_{build}")]
+
+
 def test_both_builds_give_the_same_bytes() -> None:
     """Surfaces, measurements and files, of every method."""
+    if not _processor.supports_v3():
+        pytest.skip("this processor runs only one build of the kernels")
+    if len(installed_builds()) < 2:
+        assert not os.environ.get("CI"), "continuous integration builds with ISOCORE_ISA=all"
+        pytest.skip(f"only one build is installed, {_kernels.BUILD}: ISOCORE_ISA=all makes both")
     printed = {}
     for build in ("base", "v3"):
         environment = {**os.environ, "ISOCORE_KERNELS": build}
@@ -76,6 +85,50 @@ def test_both_builds_give_the_same_bytes() -> None:
         printed[build] = json.loads(done.stdout)
     assert printed["base"] == printed["v3"]
     assert len(printed["v3"]) > 60
+
+
+@pytest.mark.parametrize(
+    ("installed", "runs_v3", "asked", "chosen"),
+    [
+        (["v3", "base"], True, "", "v3"),
+        (["v3", "base"], False, "", "base"),
+        (["v3", "base"], True, "base", "base"),
+        (["v3"], True, "v3", "v3"),
+        (["base"], True, "", "base"),
+    ],
+)
+def test_the_widest_build_that_runs_is_chosen(installed: list[str], runs_v3: bool, asked: str, chosen: str) -> None:
+    """Of those installed, unless one is asked for."""
+    assert _kernels._choose(installed, runs_v3, asked) == chosen
+
+
+@pytest.mark.parametrize(
+    ("installed", "runs_v3", "asked", "message"),
+    [
+        (["v3"], True, "base", "ISOCORE_KERNELS=base: it was not built; there is: v3"),
+        (["v3", "base"], False, "v3", "ISOCORE_KERNELS=v3: this processor lacks AVX2; there is: base"),
+        (["v3"], False, "", "for processors with AVX2 alone, which this one lacks; .*ISOCORE_ISA=all"),
+        ([], True, "", "without kernels; .*ISOCORE_ISA=all"),
+    ],
+)
+def test_a_build_that_cannot_run_is_refused(installed: list[str], runs_v3: bool, asked: str, message: str) -> None:
+    """By name and with the way out, before any of its code is loaded."""
+    with pytest.raises(ImportError, match=message):
+        _kernels._choose(installed, runs_v3, asked)
+
+
+def test_the_version_says_which_kernels_run() -> None:
+    """And a build that is not there is one line, not a traceback."""
+    for build in ("v3", "base"):
+        command = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "--version"]
+        environment = {**os.environ, "ISOCORE_KERNELS": build}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        if build in installed_builds() and (build == "base" or _processor.supports_v3()):
+            assert done.stdout == f"isocore {isocore.__version__} (kernels: {build})\n"
+        else:
+            assert done.returncode == 1
+            assert done.stderr.startswith(f"isocore: ISOCORE_KERNELS={build}: ")
+            assert done.stderr.count("\n") == 1
 
 
 if __name__ == "__main__":
