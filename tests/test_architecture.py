@@ -48,7 +48,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "extrema": {"cell_mesh"},
     "field_facts": {"extraction", "histogram", "volume"},
     "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,
-    "report": {"errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"} | KERNELS,
+    "report": {"errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
+    | {"writers/read_back"}
+    | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},
     "methods": NOUNS | KERNELS | {"whole_file"},

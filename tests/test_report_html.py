@@ -17,8 +17,8 @@ from small_files import ball, write_nifti
 from isocore.job import Job, Target
 from isocore.pipeline import convert
 from isocore.report import BatchReport, RunReport, save_report
-from isocore.report.mesh_files import read_mesh
 from isocore.report.reduce import packed, reduced
+from isocore.writers.read_back import read_mesh
 
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
@@ -121,17 +121,6 @@ def test_copies_of_surfaces_stay_within_their_bound(tmp_path: Path, limit: int) 
     added = (tmp_path / "run.html").stat().st_size - (tmp_path / "none.html").stat().st_size
     assert added <= limit + 300 * len(runs)
     assert (added > 0) == (limit > 0)
-
-
-@pytest.mark.parametrize("form", ["ply", "stl", "obj"])
-def test_our_own_outputs_are_read_back(tmp_path: Path, form: str) -> None:
-    """The same triangles from every format."""
-    source = write_nifti(tmp_path / "ball.nii.gz", ball())
-    (run,) = convert(Job(source=source, targets=(Target("50", tmp_path / f"b.{form}"),), backend="mc", format=form))
-    mesh = read_mesh(tmp_path / f"b.{form}")
-    assert mesh is not None and run.surface is not None
-    assert (len(mesh[0]), len(mesh[1])) == (run.surface.vertices, run.surface.triangles)
-    assert np.allclose([mesh[0].min(axis=0), mesh[0].max(axis=0)], run.surface.bounds, atol=1e-5)
 
 
 def test_a_reduced_copy_keeps_the_shape(tmp_path: Path) -> None:

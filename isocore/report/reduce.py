@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import base64
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from isocore.report.mesh_files import Mesh
+if TYPE_CHECKING:
+    from isocore.writers.read_back import Mesh
 
 #: 16-bit indices reach so many vertices.
 MOST_TRIANGLES = 60_000

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from isocore.report.keys import batch_as_dict
-from isocore.report.mesh_files import read_mesh
 from isocore.report.record import BatchReport, RunReport
 from isocore.report.reduce import BYTES_PER_TRIANGLE, MOST_TRIANGLES, packed, reduced
 
@@ -45,6 +44,8 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
 
 
 def _copy(run: RunReport, most: int) -> dict[str, Any] | None:
+    from isocore.writers.read_back import read_mesh  # a report without surfaces to show loads no kernels
+
     mesh = read_mesh(Path(run.output))
     return None if mesh is None else packed(reduced(mesh, most))
 

@@ -17,7 +17,8 @@ import shapes_mesh
 from isocore import writers
 from isocore.errors import OptionError, OutputError
 from isocore.surface import Surface
-from isocore.writers import FORMATS, write, write_to
+from isocore.writers import FORMATS, WRITERS, write, write_to
+from isocore.writers.read_back import READ_BACK, read_mesh
 
 ROOT = Path(__file__).parents[2]
 
@@ -57,6 +58,46 @@ def test_another_reader_finds_the_same_mesh(tmp_path, format, normals, rough_tor
     if normals and format == "ply":
         read_back = np.stack([mesh.point_data[n] for n in ("nx", "ny", "nz")], 1)
         assert np.array_equal(read_back, surface.normals)
+
+
+def test_every_writer_has_its_inverse():
+    """Reports show surfaces of all formats."""
+    assert set(READ_BACK) == set(WRITERS)
+
+
+@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("normals", [False, True])
+@pytest.mark.parametrize("float64", [False, True])
+def test_what_is_written_is_read_back(tmp_path, format, normals, float64, rough_torus):
+    """Every triangle at its place to the last bit of float32, and the same vertices, in STL of another order."""
+    surface = with_normals(rough_torus) if normals else rough_torus
+    if float64:
+        vertices = surface.vertices.astype(np.float64)
+        surface = Surface(vertices, surface.triangles, surface.normals, surface.space, surface.unit)
+    write(surface, tmp_path / f"mesh.{format}")
+    vertices, triangles = read_mesh(tmp_path / f"mesh.{format}")
+    assert vertices.dtype == np.float32 and triangles.dtype == np.int32 and vertices.shape == surface.vertices.shape
+    assert np.array_equal(vertices[triangles], surface.vertices[surface.triangles])
+    if format != "stl":
+        assert np.array_equal(vertices, surface.vertices) and np.array_equal(triangles, surface.triangles)
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_an_empty_surface_is_read_back(tmp_path, format):
+    """As no vertices and no triangles."""
+    empty = shapes_mesh.surface(np.empty((0, 3)), np.empty((0, 3), np.int32))
+    write(empty, tmp_path / f"mesh.{format}")
+    vertices, triangles = read_mesh(tmp_path / f"mesh.{format}")
+    assert vertices.shape == (0, 3) and triangles.shape == (0, 3)
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_what_no_writer_wrote_is_not_read_back(tmp_path, format):
+    """A file that is gone, cut, or another program's is no mesh, and no error."""
+    path = tmp_path / f"mesh.{format}"
+    assert read_mesh(path) is None and read_mesh(tmp_path / "mesh.off") is None
+    path.write_bytes(b"v 1 2 x\nf 1 2\n")
+    assert read_mesh(path) is None
 
 
 @pytest.mark.parametrize("normals", [False, True])

@@ -1,7 +1,8 @@
-"""Our own outputs, read back: the reports show what was written."""
+"""The inverse of the writers: the mesh in a file that one of them wrote. Reports show what was written."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,11 @@ Mesh = tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]
 
 
 def read_mesh(path: Path) -> Mesh | None:
-    """Vertices (v, 3) and triangles (t, 3) of a file that isocore wrote; None where it is gone or another's."""
-    reader = {".ply": _read_ply, ".stl": _read_stl, ".obj": _read_obj}.get(path.suffix.lower())
+    """Vertices (v, 3) and triangles (t, 3) of a file that isocore wrote; None where it is gone or another's.
+
+    STL keeps no numbers of vertices: equal places become one vertex, and vertices come in the order of their bytes.
+    """
+    reader = READ_BACK.get(path.suffix.lower())
     try:
         return None if reader is None else reader(path.read_bytes())
     except (OSError, ValueError, KeyError, IndexError):
@@ -52,3 +56,7 @@ def _read_obj(data: bytes) -> Mesh:
     faces = [[corner.split(b"/")[0] for corner in line[2:].split()] for line in lines if line.startswith(b"f ")]
     points = np.array(vertices, np.float32).reshape(-1, 3)
     return points, np.array(faces, np.int32).reshape(-1, 3) - 1
+
+
+#: suffix -> reader of a whole file's bytes: one for each of the writers.
+READ_BACK: dict[str, Callable[[bytes], Mesh]] = {".obj": _read_obj, ".ply": _read_ply, ".stl": _read_stl}
