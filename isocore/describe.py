@@ -18,7 +18,7 @@ from isocore.readers import ReadOptions, count_volumes, offered_fields, read
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
-    from isocore.readers.vtu_fields import FieldInfo
+    from isocore.readers.vtk_fields import FieldInfo
 
 _RAS_LETTERS = (("L", "R"), ("P", "A"), ("I", "S"))
 _NOT_ALONG_AN_AXIS = 1e-3

@@ -14,7 +14,7 @@ from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
 
 if TYPE_CHECKING:
-    from isocore.readers.vtu_fields import FieldInfo
+    from isocore.readers.vtk_fields import FieldInfo
 
 
 def suffix_of(path: os.PathLike[str] | str) -> str | None:

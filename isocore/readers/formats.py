@@ -15,7 +15,7 @@ from isocore.readers.raw import count_raw, raw_files, read_raw
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
-    from isocore.readers.vtu_fields import FieldInfo
+    from isocore.readers.vtk_fields import FieldInfo
 
 Field: TypeAlias = Volume | CellMesh
 

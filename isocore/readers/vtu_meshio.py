@@ -17,8 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
-from isocore.readers.vtu_fields import FieldInfo
-from isocore.readers.vtu_source import PieceData
+from isocore.readers.vtk_fields import FieldInfo
+from isocore.readers.vtk_mesh import PieceData
 
 #: meshio's names; corners come first and as in VTK (wedges mirrored). What is not here is refused.
 TYPES = {

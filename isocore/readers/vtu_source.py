@@ -3,27 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from mmap import mmap
-from typing import Any, Protocol
-
-import numpy.typing as npt
+from typing import Protocol
 
 from isocore.errors import FieldError, InputError
+from isocore.readers.vtk_fields import FieldInfo
+from isocore.readers.vtk_mesh import PieceData
 from isocore.readers.vtu_arrays import DTYPES, ArrayReader
-from isocore.readers.vtu_fields import FieldInfo
 from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
-
-
-@dataclass(frozen=True, slots=True)
-class PieceData:
-    """The arrays of one piece as they are in the file; values: flat, of its points or its cells."""
-
-    points: npt.NDArray[Any]
-    types: npt.NDArray[Any]
-    offsets: npt.NDArray[Any]
-    connectivity: npt.NDArray[Any]
-    values: npt.NDArray[Any]
 
 
 class Source(Protocol):

@@ -1,4 +1,4 @@
-"""The cells of one piece of a VTU file, as corner arrays by shape."""
+"""The cells of one piece of an unstructured grid of VTK, as corner arrays by shape."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Choose the field of a VTU file that is contoured, and make one number per point of it."""
+"""Choose the field of a VTK mesh that is contoured, and make one number per point of it."""
 
 from __future__ import annotations
 
