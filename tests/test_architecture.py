@@ -72,7 +72,7 @@ MAY_IMPORT: dict[str, set[str]] = {
 }
 
 #: Modules without a Python file.
-COMPILED = {"isocore._kernels_base", "isocore._kernels_v3"}
+COMPILED = {"isocore._kernels_base", "isocore._kernels_v3", "isocore._processor"}
 
 #: Foreign modules that only one room imports.
 ONLY_IN = {
