@@ -23,7 +23,7 @@ def _choose(installed: list[str], runs_v3: bool, asked: str) -> str:
     if not usable:
         why = "for processors with AVX2 alone, which this one lacks" if installed else "without kernels"
         raise ImportError(f"isocore was built {why}; install it again, with ISOCORE_ISA=all", name=__name__)
-    return usable[0]
+    return asked or usable[0]
 
 
 BUILD = _choose(

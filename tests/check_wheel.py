@@ -59,6 +59,7 @@ def try_out(wheel: Path) -> str:
             command = [programs / "isocore", "convert", SAMPLES, "-d", out, "--report", out / "report.json"]
             subprocess.run(command, check=True, cwd=folder, env=env, capture_output=True)
             said.append(subprocess.check_output([programs / "isocore", "--version"], cwd=folder, env=env, text=True))
+            assert f"(kernels: {build})" in said[-1], said
             digests.append({path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in out.glob("*.ply")})
             assert len(digests[-1]) == len(json.loads((out / "report.json").read_text())["outputs"]) > 0
         assert all(found == digests[0] for found in digests), digests
