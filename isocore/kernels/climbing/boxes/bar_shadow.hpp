@@ -13,7 +13,7 @@ namespace isocore::climbing {
 
 class BarShadow {
   public:
-    // Of the bar of blocks of N^3 cells whose first row is (y, z).
+    // The shadow of the bar of blocks of N^3 cells whose first row is (y, z).
     BarShadow(const SignGrid& signs, std::size_t N, std::size_t y, std::size_t z);
 
     // Has the block of `cells` cells along x from sample x on samples on both sides?

@@ -25,7 +25,6 @@ struct SiteRow {
 
 class Site {
   public:
-    using Row = SiteRow;
     static constexpr std::size_t kRows = 33 * 33;  // of the largest block
 
     explicit Site(int block_size);
