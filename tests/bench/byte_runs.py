@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 Arguments = tuple[str, ...]
 
@@ -81,9 +82,14 @@ OF_VOLUMES_PORTABLE = (
 OF_MESHES_PORTABLE = ("-b thinning -i auto -i p80 --threads 2", "-b mc -i auto -i p80 --threads 1")
 #: Of a file with many small volumes: all of them in one command.
 OF_GRIDS = tuple(
-    f"{options} --volume all -i 0.5 --no-reference --threads 1"
-    for options in ("-b mc", "-b mc --topology trilinear", "-b asc --max-error none --block-size 4", "-b asc --cap",
-                    "-b thinning")
+    f"{options} --volume all -i {isovalue} --no-reference --threads 1"
+    for options, isovalue in (
+        ("-b mc", "2"),
+        ("-b mc --topology trilinear", "0.5"),
+        ("-b asc --max-error none --block-size 4", "1.25"),
+        ("-b asc --cap", "2"),
+        ("-b thinning", "0.5"),
+    )
 )
 
 
@@ -125,27 +131,27 @@ def options_for(path: Path, kind: str, samples: int, *, portable: bool) -> Itera
     yield from (tuple(options.split()) for options in chosen)
 
 
-def make_grids(folder: Path, published: Path) -> Iterator[tuple[Path, Arguments]]:
-    """Files of many small volumes: random samples of every type, both byte orders, and the published grids.
+def make_grids(folder: Path, published: Path) -> Iterator[Path]:
+    """Files of many small volumes: random samples of every type, in both byte orders, and every fifth published grid.
 
-    Yields each file, relative to the folder's parent, and what its reader needs. Random samples are small integers,
-    so that isovalues are met exactly and faces are ambiguous.
+    Random samples are few different numbers, so that isovalues are met exactly and many faces are ambiguous.
     """
     folder.mkdir()
-    shape, count = (7, 6, 9), 24
     for seed, name in enumerate(TYPES):
-        values = np.random.default_rng(seed).integers(0, 4, (*shape, count)) / 2 - (0 if name[0] == "u" else 1)
+        values = np.random.default_rng(seed).integers(0, 4, (7, 6, 9, 24))
         for order, sign in (("little", "<"), ("big", ">")):
-            path = folder / f"{name}_{order}.raw"
-            dtype = np.dtype(name).newbyteorder(sign)
-            scaled = values if name[0] == "f" else np.rint(2 * values)
-            path.write_bytes(scaled.astype(dtype).tobytes(order="F"))
-            text = f"--shape {','.join(map(str, (*shape, count)))} --dtype {name} --byte-order {order}"
-            yield path.relative_to(folder.parent), tuple(text.split())
+            yield _write_nrrd(folder / f"{name}_{order}.nrrd", values.astype(np.dtype(name).newbyteorder(sign)), order)
     if published.is_file():
         archive = np.load(published)
         grids = next(archive[name] for name in archive.files if archive[name].ndim == 4)
-        path = folder / "published.raw"
-        path.write_bytes((np.moveaxis(grids, 0, -1).astype("<f8") + 0.5).tobytes(order="F"))
-        text = f"--shape {','.join(map(str, (*grids.shape[1:], len(grids))))} --dtype float64"
-        yield path.relative_to(folder.parent), tuple(text.split())
+        spread = (3 * np.moveaxis(grids[::5], 0, -1) + 1).astype("<f8")  # from -1..1 to where OF_GRIDS has isovalues
+        yield _write_nrrd(folder / "published.nrrd", spread, "little")
+
+
+def _write_nrrd(path: Path, samples: npt.NDArray[np.generic], order: str) -> Path:
+    """samples: (nx, ny, nz, n), in the byte order of that name."""
+    kind = {"float32": "float", "float64": "double"}.get(samples.dtype.name, samples.dtype.name)
+    sizes = " ".join(map(str, samples.shape))
+    head = f"NRRD0004\ntype: {kind}\ndimension: 4\nsizes: {sizes}\nkinds: domain domain domain list\n"
+    path.write_bytes(f"{head}endian: {order}\nencoding: raw\n\n".encode() + samples.tobytes(order="F"))
+    return path

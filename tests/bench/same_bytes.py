@@ -71,8 +71,8 @@ class Rows:
 
     def add(self, *key: str, data: bytes | str, hint: str = "") -> None:
         """A row: what was run, the hash of `data`, and a hint."""
-        name = json.dumps(" | ".join((self._part, *key)), ensure_ascii=False)
-        self._stream.write(f"{name}\t{digest(data)}\t{json.dumps(hint, ensure_ascii=False)}\n")
+        name = json.dumps(" | ".join((self._part, *key)))
+        self._stream.write(f"{name}\t{digest(data)}\t{json.dumps(hint)}\n")
         self._stream.flush()
 
     def convert(self, path: Path, *options: str) -> list[dict[str, Any]]:
@@ -125,9 +125,9 @@ def every_file(rows: Rows, only: str, *, portable: bool) -> None:
 
 def index(rows: Rows, path: Path, given: Arguments) -> None:
     """The index of a copy of the mesh, and surfaces by way of it."""
-    folder = Path("indexed")
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir()
+    shutil.rmtree("indexed", ignore_errors=True)
+    folder = Path("indexed", path.parent)
+    folder.mkdir(parents=True)
     copy = Path(shutil.copy(path, folder))
     code, screen = isocore("index", str(copy), *given)
     rows.add(str(path), *given, "index", "screen", data=re.sub(r"in [\d.]+ s", "", f"{code}\n{screen}"), hint=screen)
@@ -173,10 +173,11 @@ def run_part(stream: TextIO, part: str, data: Path, only: str) -> None:
         Path("data").symlink_to(data)
         rows = Rows(stream, part)
         every_file(rows, only, portable=portable)
-        for path, given in make_grids(Path(folder, "grids"), data / "topology" / "random_5x5x5_shared_2000.npz"):
+        for path in make_grids(Path("grids"), data / "topology" / "random_5x5x5_shared_2000.npz"):
             for options in OF_GRIDS:
                 if only in str(path) and not (portable and "big" in path.name):
-                    rows.convert(path, *given, *options.split())
+                    records = rows.convert(path, *options.split())
+                    assert any(record["status"] == "done" for record in records), (path, options)
         if not portable and not only:
             reports(rows)
         os.chdir(ROOT)
