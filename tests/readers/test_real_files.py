@@ -20,8 +20,11 @@ from isocore.volume import Volume
 pytestmark = pytest.mark.skipif(not REAL_DATA.is_dir(), reason=f"no real data at {REAL_DATA}")
 
 WITH_HEADER = tuple(suffix for suffix in SEARCHED if suffix not in (".raw", ".raw.gz", ".vtu"))
+#: The reduced inputs in `cases` go wrong in ways that each has a README for; they are no part of this table.
 SCANS = sorted(
-    path.relative_to(REAL_DATA).as_posix() for path in REAL_DATA.rglob("*") if suffix_of(path) in WITH_HEADER
+    name
+    for path in REAL_DATA.rglob("*")
+    if suffix_of(path) in WITH_HEADER and not (name := path.relative_to(REAL_DATA).as_posix()).startswith("cases/")
 )
 
 #: What is refused even with a volume chosen: the error, and what the message says, which was checked by hand.
