@@ -33,6 +33,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 COMMANDS = ("convert", "info", "index", "report", "bench")
 TIMED = {"seconds", "peak_rss_bytes"}
 OUT = Path("out")
+MOST_SHOWN = 60
 
 
 def isocore(*arguments: str) -> tuple[int, str]:
@@ -234,7 +235,9 @@ def main() -> None:
     if asked.command == "compare":
         before, after = read_rows(asked.first), read_rows(asked.second)
         found = list(differences(before, after))
-        print("\n".join([*found, f"{len(before):,} and {len(after):,} rows, {len(found):,} differ or are missing"]))
+        for paragraph in found[:MOST_SHOWN]:
+            print(paragraph)
+        print(f"{len(before):,} and {len(after):,} rows, {len(found):,} differ or are missing")
         sys.exit(1 if found or not before else 0)
     if asked.part is None:
         write(asked.file.resolve(), asked.data.resolve(), asked.only)
