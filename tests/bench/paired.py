@@ -39,7 +39,6 @@ METHODS: dict[str, dict[str, str]] = {
     "asc none": {"max_error": "none"},
 }
 MESH, BRICKS = "mesh 2 M tets", 70
-ISOVALUES = 20
 #: A timing makes as many calls as take so long, but not fewer than LEAST_CALLS.
 TIMING_SECONDS = 0.1
 LEAST_CALLS = 3
@@ -63,13 +62,13 @@ def runs(data: Path) -> dict[str, Callable[[], Any]]:
 
     @cache
     def mesh() -> Any:
-        from meshes import smooth_mesh
+        from smooth_mesh import smooth_mesh
 
         return smooth_mesh(BRICKS)
 
     @cache
     def extractor(backend: str) -> Any:
-        return prepare(mesh(), backend, Options(threads=1, isovalues=ISOVALUES))
+        return prepare(mesh(), backend, options)
 
     def drawn(name: str, method: str) -> Any:
         chosen = Options(threads=1, **METHODS[method])  # type: ignore[arg-type]  # every value here is a text
@@ -81,8 +80,7 @@ def runs(data: Path) -> dict[str, Callable[[], Any]]:
             for method in METHODS:
                 found[f"{name}: {method}"] = lambda name=name, method=method: drawn(name, method)
             found[f"{name}: measure"] = lambda name=name: isocore.measure(surface(name), 1)
-    prepared = Options(threads=1, isovalues=ISOVALUES)
-    found[f"{MESH}: thinning prepare"] = lambda: prepare(mesh(), "thinning", prepared)
+    found[f"{MESH}: thinning prepare"] = lambda: prepare(mesh(), "thinning", options)
     for backend in ("thinning", "mc"):
         found[f"{MESH}: {backend} isovalue"] = lambda backend=backend: extractor(backend)(0.3)
     command = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "--help"]
