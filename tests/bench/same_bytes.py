@@ -30,6 +30,8 @@ from typing import Any, TextIO
 from byte_runs import OF_GRIDS, Arguments, description, files, further, make_grids, options_for
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+#: Where Python says that it warns: a path and a line of the install, which differ without a difference.
+WARNED_AT = re.compile(r"^\S+\.py:\d+: (?=\w+Warning: )", re.MULTILINE)
 COMMANDS = ("convert", "info", "index", "report", "bench")
 TIMED = {"seconds", "peak_rss_bytes"}
 OUT = Path("out")
@@ -46,7 +48,7 @@ def isocore(*arguments: str) -> tuple[int, str]:
         try:
             main()
         except SystemExit as end:
-            return int(end.code or 0), printed.getvalue()
+            return int(end.code or 0), WARNED_AT.sub("", printed.getvalue())
         except Exception as error:  # what a user would see as a traceback is compared by its last line
             return 1, f"{printed.getvalue()}{type(error).__name__}: {error}"
     raise AssertionError("the command line ends by SystemExit")
