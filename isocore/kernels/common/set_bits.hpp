@@ -58,6 +58,7 @@ class SetBits {
     SetBits& operator=(const SetBits&) = delete;
 
     void add(std::uint64_t bits, const Tag& tag) { WordAdder<Tag>{end_}(bits, tag); }
+    bool empty() const { return end_ == words_.data(); }
     bool full() const { return end_ == words_.data() + kRoom; }
 
     // Calls visit(tag, bit) for each set bit of the words in the list, and empties the list.

@@ -24,11 +24,7 @@ class Counter {
         const bool has_cells = k + 1 < signs_.dims[2];
         LayerCount sum;
         for (std::size_t j = 0; j < rows; ++j) {
-            RowBase counts{};
-            for (std::size_t w = 0; w < signs_.words; ++w) {
-                for (int axis = 0; axis < 3; ++axis)
-                    counts[static_cast<std::size_t>(axis)] += ones(crossed_edges(signs_, axis, j, k, w));
-            }
+            const RowBase counts = count_crossings(signs_, j, k);
             bases_[j + rows * k] = counts;
             sum.vertices += std::size_t{counts[0]} + counts[1] + counts[2];
             if (has_cells && j + 1 < rows) sum.triangles += triangles_at_most(j, k);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -29,7 +30,17 @@ inline std::uint64_t crossed_edges(const SignGrid& signs, int axis, std::size_t 
     return k + 1 < signs.dims[2] ? (row.word(w) ^ signs.row(j, k + 1).word(w)) & signs.valid(w) : 0;
 }
 
-// How many edges along each axis that start in row (j, k) are crossed.
-std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::size_t j, std::size_t k);
+// How many edges along each axis that start in row (j, k) are crossed. Inline, since it runs once for every row: counts
+// that a call returns through memory cost a short row more than counting does.
+inline std::array<std::uint32_t, 3> count_crossings(const SignGrid& signs, std::size_t j, std::size_t k) {
+    std::uint32_t x = 0, y = 0, z = 0;
+    const auto ones = [](std::uint64_t word) { return static_cast<std::uint32_t>(std::popcount(word)); };
+    for (std::size_t w = 0; w < signs.words; ++w) {
+        x += ones(crossed_edges(signs, 0, j, k, w));
+        y += ones(crossed_edges(signs, 1, j, k, w));
+        z += ones(crossed_edges(signs, 2, j, k, w));
+    }
+    return {x, y, z};
+}
 
 }  // namespace isocore

@@ -25,7 +25,7 @@ Coordinate* write_row_vertices(const SampleReader& samples, const SignGrid& sign
     find(std::integral_constant<int, 0>{});
     find(std::integral_constant<int, 1>{});
     find(std::integral_constant<int, 2>{});
-    return samples.write_vertices(j, k, found, out);
+    return found.empty() ? out : samples.write_vertices(j, k, found, out);
 }
 
 // The same for all crossed edges of the row.

@@ -55,14 +55,17 @@ Quotient edge_quotient(const GridView<Sample>& samples, const SignGrid& signs, d
 template <class Sample, class Coordinate>
 Coordinate* write_words(const GridView<Sample>& samples, const SignGrid& signs, double isovalue, std::size_t j,
                         std::size_t k, CrossedWords& words, Coordinate* out) {
-    const double pad = static_cast<double>(signs.pad);
+    const double pad = static_cast<double>(signs.pad), y = static_cast<double>(j) - pad,
+                 z = static_cast<double>(k) - pad;
+    const Sample* const row = signs.pad ? nullptr : samples.row(j, k);
+    const std::array<std::size_t, 3> steps{samples.step(0), samples.step(1), samples.step(2)};
     words.visit([&](const WordOfEdges& word, int bit) {
-        const Dims at{word.first + static_cast<std::size_t>(bit), j, k};
-        const double share = edge_crossing(samples, signs, isovalue, word.axis, at);
-        for (int a = 0; a < 3; ++a) {
-            *out++ = static_cast<Coordinate>(static_cast<double>(at[static_cast<std::size_t>(a)]) - pad +
-                                             (a == word.axis ? share : 0.0));
-        }
+        const std::size_t i = word.first + static_cast<std::size_t>(bit);
+        const double t = row ? crossing(row[i], row[i + steps[static_cast<std::size_t>(word.axis)]], isovalue)
+                             : edge_crossing(samples, signs, isovalue, word.axis, {i, j, k});
+        *out++ = static_cast<Coordinate>(static_cast<double>(i) - pad + (word.axis == 0 ? t : 0.0));
+        *out++ = static_cast<Coordinate>(y + (word.axis == 1 ? t : 0.0));
+        *out++ = static_cast<Coordinate>(z + (word.axis == 2 ? t : 0.0));
     });
     return out;
 }
