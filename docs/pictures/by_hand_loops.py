@@ -145,7 +145,8 @@ def cut(block: Block, box: Box) -> list[Triangle]:
 
 def triangles(block: Block) -> list[Triangle]:
     """Of the whole block, as vertex numbers. Single cells with one loop and no ambiguous face are cut alike."""
-    return [tuple(block.number(n) for n in t) for box in block.boxes for t in cut(block, box)]  # type: ignore[misc]
+    drawn = (triangle for box in block.boxes for triangle in cut(block, box))
+    return [(block.number(a), block.number(b), block.number(c)) for a, b, c in drawn]
 
 
 def deviation(block: Block, box: Box) -> list[tuple[int, float]]:

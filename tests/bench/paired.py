@@ -32,7 +32,7 @@ VOLUMES: dict[str, tuple[str, float]] = {
     "knot 64": ("64", 200.0),
     "knot 256": ("256", 200.0),
 }
-METHODS: dict[str, dict[str, str]] = {
+METHODS: dict[str, dict[str, Any]] = {
     "mc": {},
     "mc trilinear": {"topology": "trilinear"},
     "asc 0.5": {"max_error": "0.5"},
@@ -71,7 +71,7 @@ def runs(data: Path) -> dict[str, Callable[[], Any]]:
         return prepare(mesh(), backend, options)
 
     def drawn(name: str, method: str) -> Any:
-        chosen = Options(threads=1, **METHODS[method])  # type: ignore[arg-type]  # every value here is a text
+        chosen = Options(threads=1, **METHODS[method])
         return isocore.extract(volume(name), VOLUMES[name][1], backend=method.split()[0], options=chosen)
 
     found: dict[str, Callable[[], Any]] = {}

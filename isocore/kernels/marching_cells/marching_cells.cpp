@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/collapsed.hpp"
 #include "common/edge_merger.hpp"
 #include "common/parallel.hpp"
 #include "tables/mesh_cases.hpp"
@@ -154,20 +155,6 @@ class Joiner {
     Mesh<Coordinate>& mesh_;
     std::vector<Places> places_;
 };
-
-// Removes triangles with two equal corners, which are drawn by cells that name a point twice.
-void drop_collapsed(Array<std::int32_t>& triangles) {
-    std::size_t end = 0;
-    for (std::size_t n = 0; n < triangles.size(); n += 3) {
-        const std::int32_t a = triangles[n], b = triangles[n + 1], c = triangles[n + 2];
-        if (a == b || b == c || c == a) continue;
-        if (end != n)
-            std::copy_n(triangles.begin() + static_cast<std::ptrdiff_t>(n), 3,
-                        triangles.begin() + static_cast<std::ptrdiff_t>(end));
-        end += 3;
-    }
-    triangles.resize(end);
-}
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/collapsed.hpp"
 #include "common/parallel.hpp"
 #include "thinning/mesh/thinning.hpp"
 #include "thinning/mesh/walk.hpp"
@@ -141,20 +142,6 @@ class Drawing {
     Array<std::uint8_t> signs_;
     std::vector<Task> tasks_;
 };
-
-// Removes triangles with two equal corners, which are drawn by cells that name a point twice.
-void drop_collapsed(Array<int32_t>& triangles) {
-    size_t end = 0;
-    for (size_t n = 0; n < triangles.size(); n += 3) {
-        const int32_t a = triangles[n], b = triangles[n + 1], c = triangles[n + 2];
-        if (a == b || b == c || c == a) continue;
-        triangles[end] = a;
-        triangles[end + 1] = b;
-        triangles[end + 2] = c;
-        end += 3;
-    }
-    triangles.resize(end);
-}
 
 }  // namespace
 
