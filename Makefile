@@ -50,7 +50,7 @@ meshes: $(BUILT)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=]: only what c
 	@$(MAKE) --no-print-directory -f examples/meshes.mk ISOCORE=$(BIN)/isocore
 
 test: $(READY)  ## run all tests
-	$(BIN)/pytest
+	$(BIN)/pytest -n auto --dist worksteal
 
 check: lint types test  ## what a commit must pass
 
