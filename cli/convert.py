@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -83,10 +84,12 @@ def _listed(path: Path | None) -> list[Path]:
     if path is None:
         return []
     try:
-        text = sys.stdin.read() if path == Path("-") else path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        data = sys.stdin.buffer.read() if path == Path("-") else path.read_bytes()
+    except OSError as error:
         raise click.UsageError(f"--files-from {path}: cannot be read ({error})") from error
-    return [Path(line) for line in text.splitlines() if line.strip()]
+    if b"\0" in data:
+        raise click.UsageError(f"--files-from {path}: holds NUL bytes; write one name a line, as UTF-8")
+    return [Path(line) for line in os.fsdecode(data).splitlines() if line.strip()]
 
 
 def _format(options: ConvertOptions) -> Format:

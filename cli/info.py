@@ -47,9 +47,9 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
         else:
             click.echo("\n".join(_lines(path, found)))
     if as_json:
-        import json
+        from isocore.report.texts import json_text
 
-        click.echo(json.dumps(described, indent=2, ensure_ascii=False, allow_nan=False))
+        click.echo(json_text(described, indent=2))
     context.exit(1 if failures else 0)
 
 

@@ -12,6 +12,8 @@ import click
 
 from isocore.errors import IsocoreError, OptionError
 
+from .names import speak_any_name
+
 #: Each command is a file of its name, imported only when it is called or described.
 COMMANDS = {
     "convert": "volumes and meshes to surfaces, one file or a whole folder",
@@ -74,6 +76,7 @@ def isocore() -> None:
 def main() -> None:
     """The entry point: run a command and exit with its code."""
     signal.signal(signal.SIGTERM, _terminate)
+    speak_any_name()
     try:
         code = isocore.main(standalone_mode=False, prog_name="isocore")
     except click.exceptions.Exit as wish:

@@ -75,7 +75,7 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> Ba
     batch = records.batch()
     if options.depfile is not None:
         with whole_file(options.depfile) as stream:
-            stream.write(depfile_text(jobs).encode())
+            stream.write(os.fsencode(depfile_text(jobs)))
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in github_annotations(batch):
             say(line)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from typing import Any
 
 from isocore.report.record import BatchReport, RunReport
 from isocore.report.summary import own_seconds
+from isocore.report.texts import json_text
 
 
 def render_benchmark(batch: BatchReport) -> str:
     """Seconds, triangles and peak memory of every output that was made."""
-    return json.dumps([entry for run in batch.outputs for entry in _entries(run)], indent=2, ensure_ascii=False) + "\n"
+    entries = [entry for run in batch.outputs for entry in _entries(run)]
+    return json_text(entries, indent=2) + "\n"
 
 
 def _entries(run: RunReport) -> Iterator[dict[str, Any]]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from isocore.report.keys import run_as_dict
 from isocore.report.record import BatchReport
+from isocore.report.texts import shown
 
 _PARTS = {
     "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",
@@ -22,17 +23,22 @@ _PARTS = {
     "seconds": "read prepare extract measure write total",
     "  ": "peak_rss_bytes",
 }
+#: A cell that begins with one of these is a formula to a spreadsheet.
+_FORMULA = tuple("=+-@\t\r\n\uff1d\uff0b\uff0d\uff20")
 COLUMNS = [f"{part.strip()}.{key}".lstrip(".") for part, keys in _PARTS.items() for key in keys.split()]
 
 
 def render_csv(batch: BatchReport) -> str:
-    """Comma separated, quoted where needed, lines ended as RFC 4180 asks."""
+    """Comma separated, quoted where needed, lines ended as RFC 4180 asks.
+
+    A text that a spreadsheet would run as a formula gets an apostrophe before it, which spreadsheets take for "text".
+    """
     text = io.StringIO()
     writer = csv.writer(text)
     writer.writerow(COLUMNS)
     for run in batch.outputs:
         record = run_as_dict(run)
-        writer.writerow([_cell(_at(record, column)) for column in COLUMNS])
+        writer.writerow([_text(_at(record, column)) for column in COLUMNS])
     return text.getvalue()
 
 
@@ -41,6 +47,13 @@ def _at(record: dict[str, Any], column: str) -> Any:
     for key in column.split("."):
         value = value.get(key) if isinstance(value, dict) else None
     return value
+
+
+def _text(value: Any) -> str:
+    """The cell, harmless: only texts, and lists of them, are anybody else's words."""
+    text = shown(_cell(value))
+    foreign = isinstance(value, str) or (isinstance(value, list) and isinstance(next(iter(value), None), str))
+    return f"'{text}" if foreign and text.startswith(_FORMULA) else text
 
 
 def _cell(value: Any) -> str:

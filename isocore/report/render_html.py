@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from isocore.report.keys import batch_as_dict
 from isocore.report.record import BatchReport, RunReport
 from isocore.report.reduce import BYTES_PER_TRIANGLE, MOST_TRIANGLES, packed, reduced
+from isocore.report.texts import shown_json
 
 #: Bytes of all reduced surfaces together, unless told otherwise.
 MESH_BYTES = 16 << 20
@@ -35,9 +35,7 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
         "css": _part("page.css"),
         "three": _part("three.min.js"),
         "js": _part("page.js"),
-        "report": json.dumps(record, ensure_ascii=False, allow_nan=False)
-        .replace("</", "<\\/")
-        .replace("<!", "<\\u0021"),
+        "report": shown_json(record).replace("</", "<\\/").replace("<!", "<\\u0021"),
     }
     before, *rest = _part("page.html").split("{{")
     return before + "".join(parts[name] + after for name, after in (part.split("}}", 1) for part in rest))

@@ -5,11 +5,11 @@ A record's line is kept: a report is written again after every input, and would 
 
 from __future__ import annotations
 
-import json
 from weakref import WeakKeyDictionary
 
 from isocore.report.keys import batch_as_dict, run_as_dict
 from isocore.report.record import BatchReport, RunReport
+from isocore.report.texts import json_text
 
 _LINES: WeakKeyDictionary[RunReport, str] = WeakKeyDictionary()
 
@@ -18,7 +18,7 @@ def render_json(batch: BatchReport) -> str:
     """The whole report."""
     keys = []
     for key, value in batch_as_dict(batch, outputs=False).items():
-        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+        text = json_text(value)
         if key == "outputs":
             lines = ",\n    ".join(_line(run) for run in batch.outputs)
             text = f"[\n    {lines}\n  ]" if lines else "[]"
@@ -34,5 +34,5 @@ def render_jsonl(batch: BatchReport) -> str:
 def _line(run: RunReport) -> str:
     line = _LINES.get(run)
     if line is None:
-        line = _LINES[run] = json.dumps(run_as_dict(run), ensure_ascii=False, allow_nan=False)
+        line = _LINES[run] = json_text(run_as_dict(run))
     return line

@@ -6,6 +6,7 @@ import re
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from isocore.report.record import BatchReport, RunReport
+from isocore.report.texts import shown
 
 #: Characters that XML 1.0 cannot hold, not even escaped.
 _UNSPEAKABLE = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -65,4 +66,4 @@ def _respelled(tag: re.Match[str]) -> str:
 
 
 def _clean(text: str) -> str:
-    return _UNSPEAKABLE.sub("\ufffd", text)
+    return _UNSPEAKABLE.sub("\ufffd", shown(text))
