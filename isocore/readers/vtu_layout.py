@@ -130,9 +130,10 @@ class _Scan:
         )
 
     def _count(self, attributes: dict[str, str], name: str, where: str = "") -> int:
-        text = attributes.get(name, "").strip()
+        given = attributes.get(name, "").strip()
+        text = given.removeprefix("+").lstrip()
         if not text.isascii() or not text.isdigit() or len(text) > 18:
-            raise InputError(f"{self.path}: {where}{name} is {text!r}, not a count; write the file again")
+            raise InputError(f"{self.path}: {where}{name} is {given!r}, not a count; write the file again")
         return int(text)
 
 
