@@ -42,12 +42,12 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
         return
     from .running import run_and_report
 
-    batch = run_and_report(jobs, options, start)
+    batch, all_written = run_and_report(jobs, options, start)
     if options.as_json:
         from isocore.report import render_json
 
         click.echo(render_json(batch), nl=False)
-    context.exit(exit_code(batch))
+    context.exit(exit_code(batch) if all_written else 1)
 
 
 def exit_code(batch: BatchReport) -> int:

@@ -32,6 +32,7 @@ def report(
     isocore report run.json --to run.html --to run.csv
     isocore report --compare old.json new.json --fail-if 'triangles>+2%' --fail-if 'seconds>+20%'
     """
+    from isocore.errors import IsocoreError
     from isocore.report import load_report, merged, renderer_for, save_report
     from isocore.report.compare import parse_limit
 
@@ -57,7 +58,13 @@ def report(
             click.echo(f"isocore: {line}", err=True)
         context.exit(3 if broken else 0)
     batch = merged(batches)
+    unwritten = False
     for target in targets:
-        save_report(batch, target, mesh_bytes=page_size)
+        try:
+            save_report(batch, target, mesh_bytes=page_size)
+        except IsocoreError as error:
+            click.echo(f"isocore: {error}", err=True)
+            unwritten = True
     if not targets:
         say_table(batch)
+    context.exit(1 if unwritten else 0)

@@ -9,6 +9,7 @@ from time import perf_counter
 
 from isocore.batches.depfile import depfile_text
 from isocore.batches.run import Batch, run_jobs
+from isocore.errors import IsocoreError, one_line
 from isocore.job import Job, Target
 from isocore.memory import free_bytes
 from isocore.report import BatchReport, RunReport, github_annotations, save_report
@@ -31,7 +32,11 @@ class Records:
         self._paths = paths
         self._mesh_bytes = mesh_bytes
         self._start = start
+        self._end: float | None = None
         self._due = dict.fromkeys(paths, 0.0)
+        self._warned: set[Path] = set()
+        #: What became of each report that could not be saved when it was last tried.
+        self.unsaved: dict[Path, str] = {}
 
     def add(self, job: Job, run: RunReport) -> None:
         """Keep a record and save the reports, each as often as it is quick to save."""
@@ -41,20 +46,43 @@ class Records:
     def batch(self) -> BatchReport:
         """The records in the order of the command."""
         runs = tuple(run for _, run in sorted(self._runs.items()))
-        return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=perf_counter() - self._start)
+        end = perf_counter() if self._end is None else self._end
+        return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=end - self._start)
 
-    def save(self, *, all_of_them: bool = True) -> None:
+    def finish(self) -> None:
+        """No record comes any more: stop the clock, and save every report once more."""
+        self._end = perf_counter()
+        self.save(all_of_them=True)
+
+    def save(self, *, all_of_them: bool) -> None:
         """Rewrite the report files; a page gets its surfaces at the end only."""
         for path in self._paths:
             begin = perf_counter()
             if all_of_them or begin >= self._due[path]:
-                save_report(self.batch(), path, mesh_bytes=self._mesh_bytes if all_of_them else 0)
+                self._try_to_save(path)
                 end = perf_counter()
                 self._due[path] = end + _SAVING_SHARE * max(0.0, end - begin - _QUICK_SECONDS)
 
+    def _try_to_save(self, path: Path) -> None:
+        """Save one report. Where that fails nothing else suffers: the next time may do better."""
+        mesh_bytes = 0 if self._end is None else self._mesh_bytes
+        self.unsaved.pop(path, None)
+        try:
+            save_report(self.batch(), path, mesh_bytes=mesh_bytes)
+        except IsocoreError as error:
+            self.unsaved[path] = str(error)
+        except Exception as error:  # of a report no fault is worth a batch
+            self.unsaved[path] = f"{path}: cannot be made ({type(error).__name__}: {one_line(error)}); please report it"
+        if path in self.unsaved and self._end is None and path not in self._warned:
+            self._warned.add(path)
+            say(f"isocore: warning: {self.unsaved[path]}; the batch goes on, and the report is tried again")
 
-def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> BatchReport:
-    """Run the jobs of `isocore convert`. Interrupted, the reports hold what was done until then."""
+
+def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tuple[BatchReport, bool]:
+    """Run the jobs of `isocore convert`; also whether every report and the depfile could be written.
+
+    Interrupted, the reports hold what was done until then.
+    """
     records = Records(jobs, options.reports, options.page_size, start)
     said: set[str] = set()
     total = sum(len(job.targets) for job in jobs)
@@ -71,17 +99,28 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> Ba
                     seconds = run.seconds.total if run.seconds else 0.0
                     say(f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s")
         finally:
-            records.save()
+            records.finish()
     batch = records.batch()
-    if options.depfile is not None:
-        with whole_file(options.depfile) as stream:
-            stream.write(os.fsencode(depfile_text(jobs)))
+    unwritten = [*records.unsaved.values(), *_write_depfile(jobs, options.depfile)]
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in github_annotations(batch):
             say(line)
     if not options.quiet:
         say_table(batch)
-    return batch
+    for line in unwritten:
+        say(f"isocore: {line}")
+    return batch, not unwritten
+
+
+def _write_depfile(jobs: list[Job], path: Path | None) -> list[str]:
+    """Write the rules; what is in the way, if anything is."""
+    if path is not None:
+        try:
+            with whole_file(path) as stream:
+                stream.write(os.fsencode(depfile_text(jobs)))
+        except IsocoreError as error:
+            return [str(error)]
+    return []
 
 
 def _batch(jobs: list[Job], options: ConvertOptions) -> Batch:
