@@ -170,6 +170,7 @@ class Index:
 
     points (p, 3) and values (p,) as the index numbers them; original (p,): their ids in the mesh; edges: how many edge
     ids the records name. Keeps the arrays alive and copies none. Calls from several threads take turns.
+    built: the arrays are build_index's own and are taken unchecked; others lead out of bounds.
     """
 
     def __init__(
@@ -180,6 +181,7 @@ class Index:
         hexes: _PartArrays,
         original: _Int32,
         edges: int,
+        built: bool = False,
     ) -> None: ...
     def propagate(self, isovalue: float, threads: int = 1, single: bool = False) -> WalkedMesh: ...
     def walk(self, isovalue: float) -> VisitedCells: ...

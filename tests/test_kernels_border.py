@@ -69,6 +69,8 @@ DAMAGES = {
     "a point that does not": lambda index: _with_record(index, 2, -1),
     "a cell that does not exist": lambda index: _with_record(index, 5, 4 * len(index.tets.records)),
     "an edge that does not exist": lambda index: _with_record(index, 9, index.edges),
+    "an edge that .* has other ends": lambda index: _with_record(index, 9, int(index.tets.records[-1, 13]) & 0x7FFF),
+    "is not glued to it": lambda index: _with_record(index, 5, 0),
     "or has two owners": lambda index: _with_record(index, 9, index.tets.records[0, 8]),
     "an edge has no owner": lambda index: replace(index, edges=index.edges + 1),
     "the skeleton names": lambda index: replace(

@@ -15,7 +15,7 @@ from isocore.errors import InputError, IsocoreError
 from isocore.extraction import Extract, Extraction, Field, Findings, Outlook, Search
 from isocore.job import Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
-from isocore.methods.index_file import load_index
+from isocore.methods.index_file import AGAIN, holds_ranges, load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
@@ -36,11 +36,20 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
     index, ready, warnings = _index_of(mesh, outlook)
-    warnings = (*mesh_warnings(options), *warnings, *_oddities(index))
-    single = single_precision(mesh)
+    single, foreign = single_precision(mesh), outlook.index is not None
 
     def extract(isovalue: float) -> Extraction:
-        walked = ready.propagate(isovalue, options.threads, single=single)
+        nonlocal index, ready, warnings, foreign
+        try:
+            walked = ready.propagate(isovalue, options.threads, single=single)
+        except ValueError as error:  # the index beside the mesh has no damage, but was not made by us
+            if not foreign:
+                raise
+            foreign = False
+            warnings = (f"{outlook.index}: is wrong ({error}); {AGAIN}; thinned anew",)
+            index = build_index(mesh)
+            ready = ready_index(mesh, index, built=True)
+            walked = ready.propagate(isovalue, options.threads, single=single)
         surface = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
         search = Search(
             cells=mesh.cells,
@@ -50,7 +59,8 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             visited=walked.visited,
             intersected=walked.visited,
         )
-        return Extraction(surface, Findings(search=search), warnings)
+        told = (*mesh_warnings(options), *warnings, *_oddities(index))
+        return Extraction(surface, Findings(search=search), told)
 
     return extract
 
@@ -73,15 +83,18 @@ def _index_of(mesh: CellMesh, outlook: Outlook) -> tuple[MeshIndex, _kernels.Ind
             f"{share:.0f} % of the points are extrema, so the field is noise to thinning and its skeleton holds "
             f"{index.skeleton_cells:,} of {mesh.cells:,} cells: -b mc may be faster"
         )
-    return index, ready_index(mesh, index), tuple(warnings)
+    return index, ready_index(mesh, index, built=True), tuple(warnings)
 
 
 def _checked(path: Path, mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
     """A loaded index, ready. Raises InputError where it names what is not there, whatever its checksum says."""
     try:
-        return ready_index(mesh, index)
+        ready = ready_index(mesh, index)
+        if not holds_ranges(index, mesh):
+            raise ValueError("the skeleton has other values than the mesh")
+        return ready
     except ValueError as error:
-        raise InputError(f"{path}: is damaged ({error}); write it again with `isocore index`") from error
+        raise InputError(f"{path}: is damaged ({error}); {AGAIN}") from error
 
 
 def _oddities(index: MeshIndex) -> tuple[str, ...]:
@@ -102,11 +115,11 @@ def _oddities(index: MeshIndex) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def ready_index(mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
+def ready_index(mesh: CellMesh, index: MeshIndex, *, built: bool = False) -> _kernels.Index:
     """The mesh and its index as the kernel takes them: checked here once, then ready for any isovalue.
 
     `propagate` draws the isosurface as a full scan finds it; `walk` is its search alone, in the index's numbers.
-    Raises ValueError if the index names what is not there.
+    Raises ValueError if the index names what is not there. built: it is of this mesh and this process, and not checked.
     """
     tets, hexes = ((part.records, part.skeleton, part.low, part.high) for part in index.parts)
     return _kernels.Index(
@@ -116,4 +129,5 @@ def ready_index(mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
         hexes=hexes,
         original=index.original,
         edges=index.edges,
+        built=built,
     )

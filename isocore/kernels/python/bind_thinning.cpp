@@ -73,7 +73,7 @@ class Index {
     using Values = std::variant<Vector<float>, Vector<double>>;
 
     Index(Rows<double, 3> points, Values values, PartArrays<kTetRecord> tets, PartArrays<kHexRecord> hexes,
-          Vector<std::int32_t> original, std::size_t edges)
+          Vector<std::int32_t> original, std::size_t edges, bool built)
         : points_(std::move(points)),
           values_(std::move(values)),
           tets_(std::move(tets)),
@@ -85,6 +85,7 @@ class Index {
         if (original_.shape(0) != count || std::visit([](const auto& v) { return v.shape(0); }, values_) != count) {
             throw std::invalid_argument("there must be one value and one original id per point");
         }
+        if (built) return;
         const nb::gil_scoped_release unlocked;
         thinning::check_index(view_, count, edges);
     }
@@ -148,9 +149,9 @@ void bind_thinning(nb::module_& module) {
     const NamedTuple visited_cells(module, "VisitedCells", {"tets", "hexes", "seeds"});
     nb::class_<Index>(module, "Index")
         .def(nb::init<Rows<double, 3>, Index::Values, PartArrays<kTetRecord>, PartArrays<kHexRecord>,
-                      Vector<std::int32_t>, std::size_t>(),
+                      Vector<std::int32_t>, std::size_t, bool>(),
              arg("points").noconvert(), arg("values").noconvert(), arg("tets").noconvert(), arg("hexes").noconvert(),
-             arg("original").noconvert(), arg("edges"))
+             arg("original").noconvert(), arg("edges"), arg("built") = false)
         .def(
             "propagate",
             [=](Index& index, double isovalue, int threads, bool single) {

@@ -1,6 +1,8 @@
 // check_index.cpp - An index may come from a file or from a caller's own arrays: what the walk relies on is checked
 // here once, so that the walk itself need not check anything.
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -27,27 +29,72 @@ bool twins_exist(const int32_t* twins, size_t count, size_t all) {
     return std::all_of(twins, twins + count, [=](int32_t twin) { return twin < 0 || static_cast<size_t>(twin) < all; });
 }
 
-// Marks the edges that a record owns (their ids are negated). False if an edge does not exist or is owned already.
-bool take_owned(const int32_t* edges, size_t count, std::vector<bool>& owned) {
-    for (size_t n = 0; n < count; ++n) {
+// What is known of an edge: nothing (0), or a hash of its two points, and in the lowest bit whether it has an owner.
+using EdgeNotes = std::vector<std::uint32_t>;
+
+std::uint32_t hash_of_ends(int32_t a, int32_t b) {
+    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
+                        high = static_cast<std::uint32_t>(std::max(a, b));
+    return static_cast<std::uint32_t>((high << 32 | low) * 0x9E3779B97F4A7C15u >> 32) | 2u;
+}
+
+// Notes the edges of a record, and those that it owns (their ids are negated). False if an edge does not exist, is
+// owned already, or lies between other points than before.
+template <class Cell>
+bool note_edges(const int32_t* corners, const int32_t* edges, EdgeNotes& notes) {
+    for (size_t n = 0; n < Cell::kEdges; ++n) {
         const auto edge = static_cast<size_t>(edges[n] < 0 ? ~edges[n] : edges[n]);
-        if (edge >= owned.size()) return false;
-        if (edges[n] >= 0) continue;
-        if (owned[edge]) return false;
-        owned[edge] = true;
+        if (edge >= notes.size()) return false;
+        const std::uint32_t ends =
+            hash_of_ends(corners[Cell::kShape.ends[n][0]], corners[Cell::kShape.ends[n][1]]) & ~1u;
+        std::uint32_t& note = notes[edge];
+        if (note != 0 && (note & ~1u) != ends) return false;
+        if (edges[n] < 0 && (note & 1u) != 0) return false;
+        note |= ends | static_cast<std::uint32_t>(edges[n] < 0);
+    }
+    return true;
+}
+
+// The same for the same corners in any order, and hardly ever for others.
+template <class Cell>
+std::uint64_t hash_of_face(const int32_t* corners, size_t face) {
+    std::uint64_t sum = 0;
+    for (mesh::Mask left = Cell::kShape.face_corners[face]; left != 0; left &= left - 1) {
+        const std::uint64_t mixed =
+            (static_cast<std::uint64_t>(corners[std::countr_zero(left)]) + 1) * 0x9E3779B97F4A7C15u;
+        sum += mixed ^ mixed >> 32;
+    }
+    return sum;
+}
+
+// Whether every face across which a cell is glued is the same face of the other cell, which is glued to this one.
+template <class Cell>
+bool glued_both_ways(const PartView& part, size_t cell) {
+    const int32_t *corners = part.records + kRecord<Cell> * cell, *twins = corners + Cell::kCorners;
+    for (size_t face = 0; face < Cell::kFaces; ++face) {
+        if (twins[face] < 0) continue;
+        const size_t other = static_cast<size_t>(twins[face]) / Cell::kFaces,
+                     its_face = static_cast<size_t>(twins[face]) % Cell::kFaces;
+        const int32_t* others = part.records + kRecord<Cell> * other;
+        if (static_cast<size_t>(others[Cell::kCorners + its_face]) != Cell::kFaces * cell + face) return false;
+        if (other > cell && hash_of_face<Cell>(corners, face) != hash_of_face<Cell>(others, its_face)) return false;
     }
     return true;
 }
 
 template <class Cell>
-void check_part(const PartView& part, size_t points, std::vector<bool>& owned) {
+void check_part(const PartView& part, size_t points, EdgeNotes& notes) {
     for (size_t cell = 0; cell < part.cells; ++cell) {
         const int32_t *corners = part.records + kRecord<Cell> * cell, *twins = corners + Cell::kCorners,
                       *edges = twins + Cell::kFaces;
         require(all_below(corners, Cell::kCorners, points), "a record names a point that does not exist");
         require(twins_exist(twins, Cell::kFaces, Cell::kFaces * part.cells),
                 "a record names a cell that does not exist");
-        require(take_owned(edges, Cell::kEdges, owned), "a record names an edge that does not exist or has two owners");
+        require(note_edges<Cell>(corners, edges, notes),
+                "a record names an edge that does not exist, has other ends or has two owners");
+    }
+    for (size_t cell = 0; cell < part.cells; ++cell) {
+        require(glued_both_ways<Cell>(part, cell), "a record is glued to a cell that is not glued to it");
     }
     require(all_below(part.skeleton, part.skeleton_size, part.cells), "the skeleton names a cell that does not exist");
     require(std::is_sorted(part.low, part.low + part.skeleton_size), "the skeleton is not sorted by its low ends");
@@ -56,10 +103,11 @@ void check_part(const PartView& part, size_t points, std::vector<bool>& owned) {
 }  // namespace
 
 void check_index(const IndexView& index, size_t points, size_t edges) {
-    std::vector<bool> owned(edges);
-    check_part<mesh::Tet>(index.tets, points, owned);
-    check_part<mesh::Hex>(index.hexes, points, owned);
-    require(std::find(owned.begin(), owned.end(), false) == owned.end(), "an edge has no owner");
+    EdgeNotes notes(edges);
+    check_part<mesh::Tet>(index.tets, points, notes);
+    check_part<mesh::Hex>(index.hexes, points, notes);
+    require(std::all_of(notes.begin(), notes.end(), [](std::uint32_t note) { return (note & 1u) != 0; }),
+            "an edge has no owner");
 }
 
 }  // namespace isocore::thinning

@@ -5,6 +5,7 @@
 //
 // Numbering vertices needs no hash: every edge has one owner among its cells, and all cells around a crossed edge are
 // visited, the owner with them. So the owners number and place the vertices first, and then the triangles find them.
+// An index out of a file that lies may name other owners or lack seeds: a number that no vertex has is refused.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -93,11 +94,14 @@ class Drawing {
         };
         for_each(task, prefetch, [&](size_t n, const int32_t* corners) {
             const auto& drawn = walk_.drawn(corners, signs_[n]);
+            bool numbered = true;
             for (size_t corner = 0; corner < 3u * drawn.triangles; ++corner) {
                 const size_t edge = drawn.edges[corner];
                 out[corner] = edge < mesh::kMiddle ? vertex_on(corners, edge)
                                                    : static_cast<int32_t>(middle + edge - mesh::kMiddle);
+                numbered &= edge >= mesh::kMiddle || static_cast<size_t>(out[corner]) < first_middle;
             }
+            if (!numbered) throw std::invalid_argument("the owner of a crossed edge is not among the cells visited");
             for (size_t triangle = 0; triangle < drawn.triangles; ++triangle, out += 3) {
                 collapsed |= out[0] == out[1] || out[1] == out[2] || out[2] == out[0];
             }

@@ -59,8 +59,9 @@ struct IndexView {
     std::int32_t* vertex_of_edge;  // scratch, one per edge: of no meaning between two calls, and not shared by two
 };
 
-// Throws std::invalid_argument unless all that the index names is there, every edge has one owner, and the skeleton is
-// sorted by low. `points` and `edges` are how many there are.
+// Throws std::invalid_argument unless all that the index names is there, every edge has one owner and the same ends
+// wherever it is named, cells are glued both ways, and the skeleton is sorted by low. `points` and `edges` are how many
+// there are.
 void check_index(const IndexView& index, std::size_t points, std::size_t edges);
 
 template <class Coordinate>
@@ -72,6 +73,7 @@ struct Mesh {
 };
 
 // field: the points and values as the index numbers them. The index must be one that check_index accepts.
+// Throws std::invalid_argument where its skeleton leaves out cells that own a crossed edge.
 template <class Coordinate, class Value>
 Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
 
