@@ -44,8 +44,11 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
 def _copy(run: RunReport, most: int) -> dict[str, Any] | None:
     from isocore.writers.read_back import read_mesh  # a report without surfaces to show loads no kernels
 
-    mesh = read_mesh(Path(run.output))
-    return None if mesh is None else packed(reduced(mesh, most))
+    try:
+        mesh = read_mesh(Path(run.output))
+        return None if mesh is None else packed(reduced(mesh, most))
+    except MemoryError:
+        return None
 
 
 def _part(name: str) -> str:

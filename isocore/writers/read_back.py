@@ -9,19 +9,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-Mesh = tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]
+#: Vertices (v, 3), float32 or float64 as in the file, finite; triangles (t, 3), each corner the number of a vertex.
+Mesh = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.int32]]
 
 
 def read_mesh(path: Path) -> Mesh | None:
-    """Vertices (v, 3) and triangles (t, 3) of a file that isocore wrote; None where it is gone or another's.
+    """Vertices (v, 3) and triangles (t, 3) of a file that isocore wrote; None where it is gone, damaged or another's.
 
     STL keeps no numbers of vertices: equal places become one vertex, and vertices come in the order of their bytes.
     """
     reader = READ_BACK.get(path.suffix.lower())
     try:
-        return None if reader is None else reader(path.read_bytes())
-    except (OSError, ValueError, KeyError, IndexError):
+        return None if reader is None or not path.is_file() else _checked(*reader(path.read_bytes()))
+    except (OSError, ValueError, KeyError, IndexError, TypeError, OverflowError, MemoryError):
         return None
+
+
+def _checked(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArray[np.int32]) -> Mesh | None:
+    """The mesh, if it is one."""
+    inside = not triangles.size or (triangles.min() >= 0 and triangles.max() < len(vertices))
+    return (vertices, triangles) if inside and np.isfinite(vertices).all() else None
 
 
 def _read_ply(data: bytes) -> Mesh:
@@ -35,9 +42,11 @@ def _read_ply(data: bytes) -> Mesh:
         elif words[0] == "property" and words[1] != "list":
             columns.append((words[2], {"float": "<f4", "double": "<f8"}[words[1]]))
     rows = np.frombuffer(data, np.dtype(columns), counts["vertex"], end)
-    vertices = np.stack([rows[axis] for axis in "xyz"], axis=1).astype(np.float32)
+    vertices = np.stack([rows[axis] for axis in "xyz"], axis=1)
     face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
     faces = np.frombuffer(data, face, counts["face"], end + rows.nbytes)
+    if (faces["count"] != 3).any():
+        raise ValueError("holds more than triangles")
     return vertices, faces["corners"].astype(np.int32)
 
 
@@ -54,7 +63,7 @@ def _read_obj(data: bytes) -> Mesh:
     lines = data.splitlines()
     vertices = [line[2:].split() for line in lines if line.startswith(b"v ")]
     faces = [[corner.split(b"/")[0] for corner in line[2:].split()] for line in lines if line.startswith(b"f ")]
-    points = np.array(vertices, np.float32).reshape(-1, 3)
+    points = np.array(vertices, np.float64).reshape(-1, 3)
     return points, np.array(faces, np.int32).reshape(-1, 3) - 1
 
 
