@@ -138,15 +138,16 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         max_error=asked.max_error,
         topology=asked.topology,
     )
-    if asked.backend is not None:
-        if asked.backend not in BACKENDS:
-            raise OptionError(f"-b {asked.backend}: no such backend; choose one of {', '.join(BACKENDS)}")
-        check_options(asked.backend, options)
+    backend = None if asked.backend == "auto" else asked.backend
+    if backend is not None:
+        if backend not in BACKENDS:
+            raise OptionError(f"-b {backend}: no such backend; choose one of auto, {', '.join(BACKENDS)}")
+        check_options(backend, options)
     return Job(
         source=Path(),
         targets=(),
         format=format_,
-        backend=asked.backend,
+        backend=backend,
         options=options,
         read_options=asked.reading.read_options(),
         space=asked.space,

@@ -87,7 +87,7 @@ _WHAT_AND_WHERE = (
 )
 
 _HOW = (
-    click.option("-b", "--backend", metavar="NAME", help="The method; default by kind of input."),
+    click.option("-b", "--backend", metavar="NAME", help="The method: asc, thinning, mc; default auto."),
     click.option(
         "--block-size", type=click.Choice([str(size) for size in BLOCK_SIZES]), help="asc: cells per block."
     ),

@@ -35,6 +35,9 @@ __all__ = [
     "prepare",
 ]
 
+#: From so many isovalues of a mesh on, thinning it first is quicker than as many full scans.
+REPAYS_THINNING = 200
+
 
 @dataclass(frozen=True, slots=True)
 class Backend:
@@ -78,9 +81,20 @@ BACKENDS: dict[str, Backend] = {
 }
 
 
-def default_backend(field_type: type) -> str:
-    """The backend used when none is named: the first in the table that accepts the field."""
-    return next(name for name, backend in BACKENDS.items() if field_type in backend.accepts)
+def default_backend(field_type: type, outlook: Outlook) -> tuple[str, str]:
+    """The backend used when none is named, and why.
+
+    Volumes are climbed. Of a mesh, thinning pays for few isovalues only where its index lies beside: on tetrahedra from
+    6,000 to 6,000,000 it took 200 to 900 isovalues until thinning and its walks were quicker than as many full scans.
+    """
+    if not issubclass(field_type, CellMesh):
+        return "asc", "the default for volumes"
+    if outlook.index is not None:
+        return "thinning", "the index beside the mesh is used"
+    asked = f"{outlook.isovalues:,} isovalue" + "s" * (outlook.isovalues != 1)
+    if outlook.isovalues < REPAYS_THINNING:
+        return "mc", f"a full scan, since {asked} would not repay thinning and no index lies beside the mesh"
+    return "thinning", f"{asked} repay thinning"
 
 
 def prepare(field: Field, backend: str, options: Options, outlook: Outlook | None = None) -> Extract:
@@ -101,7 +115,8 @@ def prepare(field: Field, backend: str, options: Options, outlook: Outlook | Non
 
 def extract(field: Field, isovalue: float, *, backend: str | None = None, options: Options | None = None) -> Surface:
     """One surface of a volume or a mesh, by the named backend or the default one."""
-    return prepare(field, backend or default_backend(type(field)), options or Options())(isovalue).surface
+    outlook = Outlook(isovalues=1)
+    return prepare(field, backend or default_backend(type(field), outlook)[0], options or Options())(isovalue).surface
 
 
 def check_options(backend: str, options: Options) -> None:

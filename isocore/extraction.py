@@ -23,10 +23,12 @@ class Outlook:
 
     isovalues: how many will be asked for, 0 where that is not known.
     index: the thinning index that lies beside a mesh, used where it matches.
+    named: whether the user named the method; against the program's own choice there is no advice.
     """
 
     isovalues: int = 0
     index: Path | None = None
+    named: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -43,9 +43,10 @@ def convert(job: Job) -> Iterator[RunReport]:
             source = _read(job)
             spread = histogram(source, threads=threads)
         known = FieldFacts.of(source, spread)
-        backend = job.backend or default_backend(type(source))
+        outlook = _outlook(job)
+        backend, why = (job.backend, "given") if job.backend else default_backend(type(source), outlook)
         with timer("prepare"):
-            extract = prepare(source, backend, job.options, _outlook(job))
+            extract = prepare(source, backend, job.options, outlook)
         reference = _ReferenceRuns(source, backend, job)
         for target in job.targets:
             try:
@@ -71,6 +72,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     isovalue=chosen.isovalue,
                     chosen=chosen.why,
                     backend=backend,
+                    backend_chosen=why,
                     surface=measured,
                     findings=found.findings,
                     seconds=timer.taken(),
@@ -134,7 +136,9 @@ def _read(job: Job) -> Field:
 
 def _outlook(job: Job) -> Outlook:
     index = index_path(job.source)
-    return Outlook(isovalues=len(job.targets), index=index if index.is_file() else None)
+    return Outlook(
+        isovalues=len(job.targets), index=index if index.is_file() else None, named=job.backend is not None
+    )
 
 
 def _emptiness(isovalue: float, known: FieldFacts) -> str:

@@ -75,6 +75,8 @@ def _index_of(mesh: CellMesh, outlook: Outlook) -> tuple[MeshIndex, _kernels.Ind
         except IsocoreError as error:
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh)
+    if not outlook.named:
+        return index, ready_index(mesh, index, built=True), tuple(warnings)
     if outlook.isovalues == 1:
         warnings.append("one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`")
     if index.extrema > NOISE * len(mesh.points):

@@ -26,7 +26,7 @@ SCHEMA = 1
 KEYS = (
     "source", "output", "status", "message", "warnings", "missed", "sha256", "bytes",
     "kind", "shape", "dtype", "spacing", "space", "unit", "volume", "field", "range", "nonfinite", "histogram",
-    "isovalue", "asked", "chosen", "backend", "options", "surface", "reference", "ratio",
+    "isovalue", "asked", "chosen", "backend", "backend_chosen", "options", "surface", "reference", "ratio",
     "error", "search", "ambiguous", "climbing", "facts", "seconds", "peak_rss_bytes",
 )
 
@@ -41,6 +41,7 @@ def run_as_dict(run: RunReport) -> dict[str, Any]:
         "isovalue": run.isovalue,
         "chosen": run.chosen,
         "backend": run.backend,
+        "backend_chosen": run.backend_chosen,
         "surface": run.surface,
         "reference": run.reference,
         "ratio": run.ratio,
@@ -79,6 +80,7 @@ def run_from_dict(record: dict[str, Any]) -> RunReport:
         isovalue=record.get("isovalue"),
         chosen=record.get("chosen", ""),
         backend=record.get("backend"),
+        backend_chosen=record.get("backend_chosen", ""),
         surface=_optional(Measurements, record.get("surface")),
         reference=_optional(Reference, record.get("reference")),
         ratio=_optional(Ratio, record.get("ratio")),

@@ -24,7 +24,7 @@ class RunReport:
     """One output. None where a failed run did not get so far; docs/report.md explains every key.
 
     missed: requirements that the surface does not meet.
-    isovalue: the number; chosen: how it came about.
+    isovalue: the number; chosen: how it came about. backend_chosen: the same of the backend.
     peak_rss_bytes: of the job, before the reference ran; None where the system does not tell.
     """
 
@@ -38,6 +38,7 @@ class RunReport:
     isovalue: float | None = None
     chosen: str = ""
     backend: str | None = None
+    backend_chosen: str = ""
     surface: Measurements | None = None
     reference: Reference | None = None
     ratio: Ratio | None = None
