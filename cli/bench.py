@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from .console import plain_table
+from .console import screen_width, styled
 from .options import PATH, Reading, default_threads, reading_options
+from .table import columns_of, set_table
 
 if TYPE_CHECKING:
     from isocore.benches.thinning import Table
@@ -84,7 +86,7 @@ def bench(
         if as_json:
             records.append({"source": str(path), "tables": [_record(table) for table in tables]})
         else:
-            click.echo("\n\n".join([click.style(str(path), bold=True), *map(_text, tables)]))
+            click.echo("\n\n".join([styled(str(path), bold=True), *map(_text, tables)]))
     if as_json:
         import json
 
@@ -140,10 +142,11 @@ def _record(table: Table) -> dict[str, Any]:
 
 
 def _text(table: Table) -> str:
-    """Columns under their headings, numbers to the right."""
+    """Columns under their headings, numbers to the right, in the width of the terminal."""
     rows = [tuple(map(_cell, row)) for row in table.rows]
     numeric = (column for column, entry in zip(table.columns, table.rows[0], strict=True) if not isinstance(entry, str))
-    return f"{table.title}\n{plain_table(table.columns, rows, frozenset(numeric))}"
+    columns = columns_of(table.columns, frozenset(numeric), table.leaving)
+    return "\n".join([table.title, *set_table(columns, rows, screen_width(sys.stdout))])
 
 
 def _cell(entry: str | int | float) -> str:

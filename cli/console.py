@@ -4,30 +4,40 @@ from __future__ import annotations
 
 import os
 import sys
+from threading import Lock
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TextIO
 
 import click
 
+from .table import columns_of, printable, set_table, shortened
+
 if TYPE_CHECKING:
     from isocore.job import Job
-    from isocore.report import BatchReport, RunReport
+    from isocore.report import BatchReport
 
 #: A run shorter than this shows no progress bar.
 _PATIENCE_SECONDS = 1.0
+_BAR_WIDTH = 20
+#: What stands before the name of the input at work: the bar, two counts, two times.
+_BEFORE_NAME = _BAR_WIDTH + 30
 
 
 class Progress:
-    """A live bar on stderr, once a run has taken longer than a second; nothing where stderr is no terminal."""
+    """A live bar on stderr, once a run has taken longer than a second; nothing where stderr is no terminal.
+
+    While it is there, lines for people go through `say`, which puts them above it.
+    """
 
     def __init__(self, total: int, *, wanted: bool) -> None:
         self._wanted = wanted and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._total = total
         self._done = 0
-        self._label = ""
+        self._names: list[str] = []
         self._bar: Any = None
         self._task: Any = None
         self._timer: Any = None
+        self._lock = Lock()
 
     def __enter__(self) -> Self:
         if self._wanted:
@@ -41,16 +51,22 @@ class Progress:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Take the bar away for good."""
         self._wanted = False
         if self._timer is not None:
             self._timer.cancel()
             self._timer.join()
-        if self._bar is not None:
-            self._bar.stop()
+        with self._lock:
+            if self._bar is not None:
+                self._bar.stop()
+                self._bar = None
 
     def at(self, jobs: list[Job]) -> None:
         """Say what is being worked on."""
-        self._label = ", ".join(job.source.name for job in jobs)
+        self._names = [printable(job.source.name) for job in jobs]
         self._update()
 
     def step(self) -> None:
@@ -58,28 +74,40 @@ class Progress:
         self._done += 1
         self._update()
 
+    def say(self, text: str) -> None:
+        """A line for people: above the bar where there is one. The terminal breaks it where it is too long."""
+        with self._lock:
+            if self._bar is None:
+                say(text)
+            else:
+                self._bar.console.print(text, markup=False, highlight=False, emoji=False, soft_wrap=True)
+
     def _update(self) -> None:
-        if self._bar is not None:
-            self._bar.update(self._task, completed=self._done, label=self._label)
+        with self._lock:
+            if self._bar is not None:
+                self._bar.update(self._task, completed=self._done, label=self._label())
+
+    def _label(self) -> str:
+        """The first input at work, in the room that the bar leaves, and how many others there are."""
+        more = f" and {len(self._names) - 1} more" if len(self._names) > 1 else ""
+        room = (screen_width(sys.__stderr__ or sys.stderr) or 80) - _BEFORE_NAME - len(more)
+        return shortened(self._names[:1] or [""], max(room, 10))[0] + more
 
     def _show(self) -> None:
         from rich.console import Console
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            TextColumn,
-            TimeElapsedColumn,
-            TimeRemainingColumn,
-        )
+        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
         from rich.progress import Progress as Bar
 
-        if not self._wanted:
-            return
-        columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-        bar = Bar(*columns, TextColumn("{task.fields[label]}"), console=Console(stderr=True), transient=True)
-        self._task = bar.add_task("", total=self._total, completed=self._done, label=self._label)
-        bar.start()
-        self._bar = bar
+        with self._lock:
+            if not self._wanted:
+                return
+            columns = (BarColumn(_BAR_WIDTH), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+            name = TextColumn("{task.fields[label]}", markup=False)
+            screen = Console(stderr=True, emoji=False)
+            bar = Bar(*columns, name, console=screen, transient=True, redirect_stdout=False)
+            self._task = bar.add_task("", total=self._total, completed=self._done, label=self._label())
+            bar.start()
+            self._bar = bar
 
 
 def say(text: str) -> None:
@@ -87,43 +115,30 @@ def say(text: str) -> None:
     click.echo(text, err=True)
 
 
-def lines_of(run: RunReport) -> list[str]:
-    """What deserves a line at once: a failure, a miss, warnings."""
-    lines = [f"isocore: {run.message}"] if run.status == "failed" else []
-    lines += [f"isocore: {run.output}: misses {miss}" for miss in run.missed]
-    warnings = [*run.warnings, run.message] if run.status == "empty" else run.warnings
-    return lines + [f"isocore: warning: {run.source}: {warning}" for warning in warnings]
+def screen_width(stream: TextIO) -> int | None:
+    """Columns of the terminal behind a stream, or as COLUMNS says; None where there is no terminal to fit into."""
+    if not stream.isatty():
+        return None
+    if (asked := os.environ.get("COLUMNS", "")).isdecimal() and int(asked):
+        return int(asked)
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or None
+    except (OSError, ValueError):
+        return None
+
+
+def styled(text: str, **style: Any) -> str:
+    """The text in a style, unless NO_COLOR is set; click takes it away again where there is no terminal."""
+    return text if os.environ.get("NO_COLOR") else click.style(text, **style)
 
 
 def say_table(batch: BatchReport) -> None:
-    """One line per output; drawn by rich on a terminal, plain otherwise."""
-    from isocore.report.summary import HEADINGS, RIGHT, summary_rows, totals_line
+    """One line per output, in the width of the terminal, then their sums; red where something went wrong."""
+    from isocore.report.summary import HEADINGS, LEAVING, RIGHT, summary_rows, totals_line
 
-    rows = summary_rows(batch)
-    if sys.stderr.isatty():
-        from rich.console import Console
-        from rich.table import Table
-
-        table = Table(box=None, pad_edge=False)
-        for heading in HEADINGS:
-            table.add_column(heading, justify="right" if heading in RIGHT else "left", overflow="fold")
-        for row, run in zip(rows, batch.outputs, strict=True):
-            table.add_row(*row, style="red" if run.status == "failed" or run.missed else None)
-        Console(stderr=True).print(table)
-    else:
-        say(plain_table(HEADINGS, rows, RIGHT))
+    columns = columns_of(HEADINGS, RIGHT, LEAVING, shrinks=HEADINGS[0])
+    headings, *lines = set_table(columns, summary_rows(batch), screen_width(sys.stderr))
+    say(styled(headings, bold=True))
+    for line, run in zip(lines, batch.outputs, strict=True):
+        say(styled(line, fg="red") if run.status == "failed" or run.missed else line)
     say(totals_line(batch))
-
-
-def plain_table(headings: tuple[str, ...], rows: list[tuple[str, ...]], right: frozenset[str]) -> str:
-    """Columns set apart by two spaces. right: the headings of those that end in line."""
-    widths = [max(len(line[column]) for line in (headings, *rows)) for column in range(len(headings))]
-
-    def line(cells: tuple[str, ...]) -> str:
-        set_ = (
-            cell.rjust(width) if heading in right else cell.ljust(width)
-            for cell, width, heading in zip(cells, widths, headings, strict=True)
-        )
-        return "  ".join(set_).rstrip()
-
-    return "\n".join(line(cells) for cells in (headings, *rows))

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from .console import screen_width, styled
 from .options import PATH, Reading, default_threads, reading_options
+from .table import cells_of, folded, printable
 
 if TYPE_CHECKING:
     from isocore.describe import Description
     from isocore.histogram import Bars
 
-_WIDTH = 64
+_WIDEST, _NARROWEST = 64, 8
 _BARS = " ▁▂▃▄▅▆▇█"
 _ROWS = 6
 
@@ -45,7 +47,7 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
         if as_json:
             described.append(_record(path, found))
         else:
-            click.echo("\n".join(_lines(path, found)))
+            click.echo("\n".join(_lines(path, found, screen_width(sys.stdout))))
     if as_json:
         from isocore.report.texts import json_text
 
@@ -62,15 +64,18 @@ def _record(path: Path, found: Description) -> dict[str, Any]:
     return plain_record
 
 
-def _lines(path: Path, found: Description) -> list[str]:
-    lines = [str(path) if os.environ.get("NO_COLOR") else click.style(str(path), bold=True)]
-    lines += [f"  {key:<12} {_line(key, value)}" for key, value in found.facts.items() if _worth_a_line(key, value)]
-    lines += [f"  {'warning':<12} {warning}" for warning in found.facts["warnings"]]
-    lines += drawn(found.spread.coarse(_WIDTH))
-    for choice in found.isovalues:
-        lines.append(f"  {'isovalue':<12} {choice.isovalue:<12.6g} -i {choice.asked!s:<6} {choice.why}")
-    if not found.isovalues:
-        lines.append(f"  {'isovalue':<12} none: the samples do not differ")
+def _lines(path: Path, found: Description, width: int | None) -> list[str]:
+    lines = [styled(printable(str(path)), bold=True)]
+    facts = [(key, _line(key, value)) for key, value in found.facts.items() if _worth_a_line(key, value)]
+    for key, text in [*facts, *(("warning", warning) for warning in found.facts["warnings"])]:
+        lines += folded(f"  {key:<12} ", text, width)
+    lines += drawn(found.spread.coarse(_bars(width)), width)
+    isovalues = [(f"{choice.isovalue:.6g}", f"-i {choice.asked}", choice.why) for choice in found.isovalues]
+    number, option = (max((len(row[n]) for row in isovalues), default=0) for n in (0, 1))
+    for value, asked, why in isovalues:
+        lines += folded(f"  {'isovalue':<12} {value:<{number}}  {asked:<{option}}  ", why, width)
+    if not isovalues:
+        lines += folded(f"  {'isovalue':<12} ", "none: the samples do not differ", width)
     return lines
 
 
@@ -98,8 +103,19 @@ def _text(value: Any) -> str:
     return f"{value:,}" if isinstance(value, int) else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def drawn(bars: Bars) -> list[str]:
-    """A histogram as lines of text; heights are logarithmic, since the background outnumbers all else."""
+def _bars(width: int | None) -> int:
+    """How many bars have room; each of the same number of bins."""
+    bars = _WIDEST
+    while width is not None and bars + 2 > width and bars > _NARROWEST:
+        bars //= 2
+    return bars
+
+
+def drawn(bars: Bars, width: int | None = None) -> list[str]:
+    """A histogram as lines of text; heights are logarithmic, since the background outnumbers all else.
+
+    width: of the screen, which decides where the note beside the two ends has its place.
+    """
     from math import log1p
 
     counts = bars.counts
@@ -113,4 +129,6 @@ def drawn(bars: Bars) -> list[str]:
         cells = (min(max(height - row * (len(_BARS) - 1), 0), len(_BARS) - 1) for height in heights)
         lines.append("  " + "".join(_BARS[cell] for cell in cells).rstrip())
     low, high = f"{bars.low:.6g}", f"{bars.high:.6g}"
-    return [*lines, "  " + low + high.rjust(max(len(counts) - len(low), len(high) + 1)) + "  (counts, log scale)"]
+    ends = "  " + low + high.rjust(max(len(counts) - len(low), len(high) + 1))
+    note = "  (log scale)"
+    return [*lines, ends + note] if width is None or cells_of(ends + note) <= width else [*lines, ends, note]

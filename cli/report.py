@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import click
 
 from .options import PATH, Memory
+
+#: Of the columns of a comparison: whether set to the right, in which place it leaves a narrow screen, and whether it
+#: holds names.
+_COMPARED = (
+    (False, 0, True),
+    (True, 5, False),
+    (True, 0, False),
+    (True, 2, False),
+    (True, 0, False),
+    (True, 4, False),
+    (True, 1, False),
+    (True, 3, False),
+    (False, 0, False),
+)
 
 
 @click.command(short_help="Turn JSON reports into tables, pages and CI formats; compare two.")
@@ -49,10 +64,11 @@ def report(
     if compare:
         from isocore.report.compare import HEADINGS, broken_limits, comparison_rows
 
-        from .console import plain_table
+        from .console import screen_width
+        from .table import Column, set_table
 
-        right = frozenset(("isovalue", "triangles", "then", "change", "seconds"))
-        click.echo(plain_table(HEADINGS, comparison_rows(*batches), right))
+        columns = [Column(name, *set_) for name, set_ in zip(HEADINGS, _COMPARED, strict=True)]
+        click.echo("\n".join(set_table(columns, comparison_rows(*batches), screen_width(sys.stdout))))
         broken = broken_limits(batches[0], batches[1], parsed)
         for line in broken:
             click.echo(f"isocore: {line}", err=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
@@ -15,8 +16,10 @@ from isocore.memory import free_bytes
 from isocore.report import BatchReport, RunReport, github_annotations, save_report
 from isocore.whole_file import whole_file
 
-from .console import Progress, lines_of, say, say_table
+from .console import Progress, say, say_table
 from .convert_options import ConvertOptions
+from .table import printable
+from .warned import Warned, said_at_once, warnings_of
 
 #: A report that takes longer to save than this is left for so many times as long.
 _QUICK_SECONDS = 0.02
@@ -24,14 +27,17 @@ _SAVING_SHARE = 10
 
 
 class Records:
-    """The records so far, and the report files that show them."""
+    """The records so far, and the report files that show them. tell: says a line to the user."""
 
-    def __init__(self, jobs: list[Job], paths: tuple[Path, ...], mesh_bytes: int, start: float) -> None:
+    def __init__(
+        self, jobs: list[Job], paths: tuple[Path, ...], mesh_bytes: int, start: float, *, tell: Callable[[str], None]
+    ) -> None:
         self._places = {(id(job), str(target.output)): n for n, (job, target) in enumerate(_targets(jobs))}
         self._runs: dict[int, RunReport] = {}
         self._paths = paths
         self._mesh_bytes = mesh_bytes
         self._start = start
+        self._tell = tell
         self._end: float | None = None
         self._due = dict.fromkeys(paths, 0.0)
         self._warned: set[Path] = set()
@@ -75,7 +81,7 @@ class Records:
             self.unsaved[path] = f"{path}: cannot be made ({type(error).__name__}: {one_line(error)}); please report it"
         if path in self.unsaved and self._end is None and path not in self._warned:
             self._warned.add(path)
-            say(f"isocore: warning: {self.unsaved[path]}; the batch goes on, and the report is tried again")
+            self._tell(f"isocore: warning: {self.unsaved[path]}; the batch goes on, and the report is tried again")
 
 
 def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tuple[BatchReport, bool]:
@@ -83,23 +89,22 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
 
     Interrupted, the reports hold what was done until then.
     """
-    records = Records(jobs, options.reports, options.page_size, start)
-    said: set[str] = set()
+    warned = Warned()
     total = sum(len(job.targets) for job in jobs)
     with Progress(total, wanted=not (options.quiet or options.no_progress)) as progress:
+        records = Records(jobs, options.reports, options.page_size, start, tell=progress.say)
         try:
             for job, run in run_jobs(jobs, _batch(jobs, options), at=progress.at):
                 records.add(job, run)
+                warned.add(run)
                 progress.step()
-                for line in lines_of(run):
-                    if line not in said:
-                        say(line)
-                said.update(lines_of(run))
-                if options.verbose:
-                    seconds = run.seconds.total if run.seconds else 0.0
-                    say(f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s")
+                for line in [*said_at_once(run), *(_in_full(run) if options.verbose else ())]:
+                    progress.say(line)
         finally:
             records.finish()
+            progress.stop()
+            if not options.verbose:
+                _say_warnings(warned, options)
     batch = records.batch()
     unwritten = [*records.unsaved.values(), *_write_depfile(jobs, options.depfile)]
     if os.environ.get("GITHUB_ACTIONS") == "true":
@@ -121,6 +126,22 @@ def _write_depfile(jobs: list[Job], path: Path | None) -> list[str]:
         except IsocoreError as error:
             return [str(error)]
     return []
+
+
+def _in_full(run: RunReport) -> list[str]:
+    """What --verbose says of an output: what became of it, and each of its warnings."""
+    seconds = run.seconds.total if run.seconds else 0.0
+    done = f"{run.source} -> {run.output}: {run.status}, {run.chosen}, {seconds:.3f} s"
+    warnings = [] if run.status == "skipped" else warnings_of(run)
+    return [printable(done), *(f"isocore: warning: {printable(f'{run.source}: {text}')}" for text in warnings)]
+
+
+def _say_warnings(warned: Warned, options: ConvertOptions) -> None:
+    for line in warned.lines():
+        say(line)
+    if warned.several:
+        listed = str(options.reports[0]) if options.reports else "--report FILE or -v"
+        say(f"isocore: {listed} lists which warning is about which surface")
 
 
 def _batch(jobs: list[Job], options: ConvertOptions) -> Batch:

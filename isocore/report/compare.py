@@ -15,7 +15,7 @@ from typing import Any
 from isocore.errors import OptionError
 from isocore.report.keys import run_as_dict
 from isocore.report.record import BatchReport, RunReport
-from isocore.report.summary import own_seconds
+from isocore.report.summary import own_seconds, told_apart
 
 _LIMIT = re.compile(r"(?P<key>[\w.]+)\s*(?P<sense>[<>])\s*(?P<number>[+-]?\d+(\.\d*)?(e[+-]?\d+)?)\s*(?P<percent>%?)")
 _SHORT = {"triangles": "surface.triangles", "vertices": "surface.vertices"}
@@ -88,8 +88,9 @@ def broken_limits(old: BatchReport, new: BatchReport, limits: list[Limit]) -> li
 def comparison_rows(old: BatchReport, new: BatchReport) -> list[tuple[str, ...]]:
     """The table on screen, in the order of HEADINGS."""
     rows = []
-    for before, run in paired(old, new):
-        cells = [PurePath(run.output).name, run.asked.asked]
+    names = told_apart([run.output for run in new.outputs])
+    for name, (before, run) in zip(names, paired(old, new), strict=True):
+        cells = [name, run.asked.asked]
         for key, form in (("triangles", ",.0f"), ("seconds", ".4f")):
             value, then = value_of(run, key), None if before is None else value_of(before, key)
             cells += ["" if number is None else format(number, form) for number in (value, then)]

@@ -2,36 +2,63 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any
 
+from isocore.measurements import Measurements
 from isocore.report.record import BatchReport, RunReport
 
 HEADINGS = ("file", "isovalue", "triangles", "reference", "ratio", "seconds", "ref. s", "watertight", "status")
 #: Headings of numbers, which are set to the right.
 RIGHT = frozenset(("isovalue", "triangles", "reference", "ratio", "seconds", "ref. s"))
+#: Headings in the order in which a narrow screen goes without them.
+LEAVING = ("ref. s", "reference", "ratio", "seconds", "watertight", "isovalue", "triangles")
 
 
 def summary_rows(batch: BatchReport) -> list[tuple[str, ...]]:
     """The table on screen, without its headings."""
-    return [summary_row(run) for run in batch.outputs]
+    names = told_apart([run.source if run.output in ("", "-") else run.output for run in batch.outputs])
+    return [summary_row(run, name) for run, name in zip(batch.outputs, names, strict=True)]
 
 
-def summary_row(run: RunReport) -> tuple[str, ...]:
-    """One output's cells, in the order of HEADINGS."""
+def told_apart(paths: Sequence[str]) -> list[str]:
+    """Of each path its name; where others end alike, with as many folders before it as tell them apart."""
+    parts = {path: PurePath(path).parts or (path,) for path in paths}
+    lengths = dict.fromkeys(parts, 1)
+    alike = list(parts)
+    while alike:
+        tails: dict[tuple[str, ...], list[str]] = {}
+        for path in alike:
+            tails.setdefault(parts[path][-lengths[path] :], []).append(path)
+        groups = [group for group in tails.values() if len(group) > 1]
+        alike = [path for group in groups for path in group if lengths[path] < len(parts[path])]
+        for path in alike:
+            lengths[path] += 1
+    return [str(PurePath(*parts[path][-lengths[path] :])) for path in paths]
+
+
+def summary_row(run: RunReport, name: str) -> tuple[str, ...]:
+    """One output's cells, in the order of HEADINGS. name: what its file is called among the others."""
     surface, reference, ratio = run.surface, run.reference, run.ratio
-    watertight = surface and surface.watertight
     return (
-        PurePath(run.output or run.source).name if run.output != "-" else PurePath(run.source).name,
+        name,
         run.asked.asked if run.isovalue is None else f"{run.isovalue:.6g}",
         count(surface and surface.triangles),
         count(reference and reference.triangles),
         number(ratio and ratio.triangles, ".2f"),
         number(own_seconds(run), ".3f"),
         number(reference and reference.seconds, ".3f"),
-        "" if watertight is None else "yes" if watertight else "no",
+        "" if surface is None else watertight(surface),
         f"{run.status}, missed" if run.missed else run.status,
     )
+
+
+def watertight(surface: Measurements) -> str:
+    """Whether a surface is closed, in a word; "-" for one without triangles, of which it cannot be said."""
+    if not surface.triangles:
+        return "-"
+    return "yes" if surface.watertight else "no"
 
 
 def own_seconds(run: RunReport) -> float | None:
