@@ -259,4 +259,4 @@ def test_a_bar_appears_on_a_terminal_only(tmp_path: Path, monkeypatch: pytest.Mo
                 if progress._bar is not None:
                     break
             progress.step()
-        assert (progress._bar is not None) is shown and bool(stream.getvalue()) is shown
+            assert (progress._bar is not None) is shown and bool(stream.getvalue()) is shown
