@@ -137,10 +137,15 @@ def cells_of(text: str) -> int:
 
 
 def printable(text: str) -> str:
-    """A text that cannot move the cursor or break a line: what is no character to be seen is spelt out."""
+    """A text that cannot move the cursor or break a line: what is no character to be seen is spelt out.
+
+    The bytes of a name that is no UTF-8, which Python holds as surrogates, pass: stdout and stderr give them back.
+    """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return "".join(
+        c if c.isprintable() or "\udc80" <= c <= "\udcff" else c.encode("unicode_escape").decode() for c in text
+    )
 
 
 def folded(head: str, text: str, width: int | None) -> list[str]:

@@ -111,8 +111,9 @@ def test_wide_characters_take_two_columns_and_combining_ones_none() -> None:
 
 
 def test_a_name_cannot_move_the_cursor() -> None:
-    """Control characters and halves of characters are spelt out."""
-    assert printable("a\x1b[2Jb\n\udce9.ply") == "a\\x1b[2Jb\\n\\udce9.ply"
+    """Control characters and halves of characters are spelt out; bytes that are no UTF-8 stay what they are."""
+    assert printable("a\x1b[2Jb\n\ud800.ply") == "a\\x1b[2Jb\\n\\ud800.ply"
+    assert printable("M\udcfcller\n") == "M\udcfcller\\n"
     (_, line) = set_table([Column("file", shrinks=True)], [("a\nb",)])
     assert line == "a\\nb"
 
