@@ -151,6 +151,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         options=options,
         read_options=asked.reading.read_options(),
         space=asked.space,
+        offset=asked.about,
         reference=asked.reference,
         require=requirements,
         max_triangles=asked.max_triangles,

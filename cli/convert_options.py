@@ -10,10 +10,20 @@ from typing import Any, Literal
 
 import click
 
-from isocore.choices import BLOCK_SIZES, FORMATS, TOPOLOGIES, Choice, Format, MaxError
+from isocore.choices import BLOCK_SIZES, FORMATS, TOPOLOGIES, About, Choice, Format, MaxError
 from isocore.requirements import REQUIREMENTS
 
-from .options import PATH, Isovalue, Jobs, MaxErrorType, Memory, Reading, default_threads, reading_options, with_all
+from .options import (
+    PATH,
+    Isovalue,
+    Jobs,
+    MaxErrorType,
+    Memory,
+    Reading,
+    default_threads,
+    reading_and_offset_options,
+    with_all,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,9 +42,10 @@ class ConvertOptions:
     max_error: MaxError | None
     topology: str | None
     space: Literal["ras", "lps", "las", "native", "index"]
-    normals: bool
+    normals: bool | None
     cap: bool
     reading: Reading
+    about: About | None
     ambiguities: Path | None
     reference: bool
     require: str | None
@@ -69,7 +80,7 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
     def with_record(context: click.Context, /, **values: Any) -> None:
         command(context, ConvertOptions(**values))
 
-    return with_all(with_record, (*_WHAT_AND_WHERE, *_HOW, reading_options, *_CHECKED, *_AT_ONCE, *_TOLD))
+    return with_all(with_record, (*_WHAT_AND_WHERE, *_HOW, reading_and_offset_options, *_CHECKED, *_AT_ONCE, *_TOLD))
 
 
 _WHAT_AND_WHERE = (
@@ -96,7 +107,7 @@ _HOW = (
     click.option(
         "--space", type=click.Choice(["ras", "lps", "las", "native", "index"]), default="native", show_default=True
     ),
-    click.option("--normals/--no-normals", help="Write vertex normals from the samples' gradient."),
+    click.option("--normals/--no-normals", default=None, help="Vertex normals; default on where the format has them."),
     click.option("--cap/--no-cap", help="Close the surface at the volume's border."),
 )
 

@@ -41,6 +41,21 @@ class Numbers(click.ParamType):
         return numbers
 
 
+class Offset(click.ParamType):
+    """Bytes before a raw file's samples (352), or the point that vertices are written about (auto or X,Y,Z)."""
+
+    name = "auto|X,Y,Z|BYTES"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """A number of bytes, or the point."""
+        if str(value).isdecimal():
+            return int(value)
+        try:
+            return choices.parse_about(str(value))
+        except OptionError:
+            self.fail(f"{value}: needs auto or X,Y,Z, or a number of bytes for raw files", parameter, context)
+
+
 class MaxErrorType(click.ParamType):
     """Voxels (0.5), world units (0.3mm), or none."""
 
@@ -140,13 +155,34 @@ class Reading:
 
 def reading_options(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options of Reading; it gets them as one argument, `reading`."""
+    return with_all(_with_reading(command), (*_READING_OPTIONS, _RAW_OFFSET))
 
+
+def reading_and_offset_options(command: Callable[..., None]) -> Callable[..., None]:
+    """As reading_options, for a command that writes vertices: `--offset` takes bytes or a point, each once.
+
+    The command gets the point as one more argument, `about`.
+    """
+    inner = _with_reading(command)
+
+    @wraps(command)
+    def with_offsets(*arguments: Any, offset: tuple[int | choices.About, ...], **values: Any) -> None:
+        raw = [given for given in offset if isinstance(given, int)]
+        points = [given for given in offset if not isinstance(given, int)]
+        if len(raw) > 1 or len(points) > 1:
+            raise click.UsageError("--offset: is given twice; once for bytes and once for a point is all there is")
+        inner(*arguments, offset=raw[0] if raw else None, about=points[0] if points else None, **values)
+
+    return with_all(with_offsets, (*_READING_OPTIONS, _OFFSETS))
+
+
+def _with_reading(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_reading(*arguments: Any, **values: Any) -> None:
         reading = Reading(**{item.name: values.pop(item.name) for item in fields(Reading)})
         command(*arguments, reading=reading, **values)
 
-    return with_all(with_reading, _READING_OPTIONS)
+    return with_reading
 
 
 _READING_OPTIONS = (
@@ -158,7 +194,13 @@ _READING_OPTIONS = (
     click.option("--spacing", type=Numbers(float), metavar="A,B,C", help="Raw: distance of samples per axis."),
     click.option("--origin", type=Numbers(float), metavar="A,B,C", help="Raw: place of the first sample."),
     click.option("--byte-order", type=click.Choice(["little", "big"]), help="Raw: default little."),
-    click.option("--offset", type=click.IntRange(min=0), metavar="BYTES", help="Raw: bytes before the samples."),
+)
+
+_RAW_OFFSET = click.option(
+    "--offset", type=click.IntRange(min=0), metavar="BYTES", help="Raw: bytes before the samples."
+)
+_OFFSETS = click.option(
+    "--offset", multiple=True, type=Offset(), help="Write vertices about this point; raw: bytes before the samples."
 )
 
 

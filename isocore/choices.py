@@ -1,7 +1,8 @@
 """What may be asked for in words: each grammar stands here once, and each value prints back to the text it came from.
 
 An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, or `A:B:N` (N numbers from A to B). The bound
-on the error is a length in voxels (`0.5`) or in world units (`0.3mm`), or `none`. The command line's help reads this
+on the error is a length in voxels (`0.5`) or in world units (`0.3mm`), or `none`. The point that vertices are written
+about is `auto` or three numbers. The command line's help reads this
 file, so it imports no numpy before a range is asked for.
 """
 
@@ -18,6 +19,8 @@ from isocore.errors import OptionError
 Format: TypeAlias = Literal["ply", "obj", "stl"]
 #: What surfaces are written as; the first is the default.
 FORMATS: tuple[Format, ...] = get_args(Format)
+#: Those that hold a normal for every vertex.
+SHADED_FORMATS = frozenset({"ply", "obj"})
 BLOCK_SIZES = (1, 2, 4, 8, 16, 32)
 TOPOLOGIES = ("faces", "trilinear")
 #: Millimetres in one unit of length.
@@ -105,6 +108,17 @@ class Unbounded:
 MaxError: TypeAlias = Voxels | WorldLength | Unbounded
 
 
+@dataclass(frozen=True, slots=True)
+class About:
+    """The point that vertices are written about; None is one chosen by the field; text: as it was written."""
+
+    point: tuple[float, float, float] | None
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
 def parse_choices(texts: Iterable[str]) -> tuple[Choice, ...]:
     """One choice per surface, ranges spread, no two alike; `auto` where nothing is asked for."""
     return distinct(choice for text in texts for choice in spread(text))
@@ -179,3 +193,17 @@ def parse_max_error(text: str) -> MaxError:
     if not math.isfinite(number) or number < 0:
         raise OptionError(f"--max-error {text}: must be a finite length, not negative; none lifts the bound")
     return WorldLength(number, unit, text) if unit in MILLIMETRES else Voxels(number, text)
+
+
+def parse_about(text: str) -> About:
+    """The point that vertices are written about: `auto` or `X,Y,Z`. Raises OptionError for nonsense."""
+    text = text.strip()
+    if text.lower() == "auto":
+        return About(None, "auto")
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise OptionError(f"--offset {text}: is no point; write auto, or three numbers as 448000,5412000,0") from None
+    if not all(math.isfinite(number) for number in (x, y, z)):
+        raise OptionError(f"--offset {text}: must be finite")
+    return About((x, y, z), text)

@@ -96,11 +96,12 @@ class Findings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Extraction:
-    """A surface in the world, and what its method has to say about it."""
+    """A surface in the world, and what its method has to say about it; seconds_normals: for vertex normals alone."""
 
     surface: Surface
     findings: Findings = field(default_factory=Findings)
     warnings: tuple[str, ...] = ()
+    seconds_normals: float = 0.0
 
     @property
     def facts(self) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from isocore.choices import Choice, Format, MaxError, parse_choice, parse_max_error
+from isocore.choices import SHADED_FORMATS, About, Choice, Format, MaxError, parse_about, parse_choice, parse_max_error
 from isocore.readers.options import ReadOptions
 from isocore.volume import Space
 
@@ -19,7 +19,7 @@ class Options:
 
     threads: at least 1. Results do not depend on it.
     cap: close the surface at the volume's border.
-    normals: compute vertex normals.
+    normals: compute vertex normals; None is yes where a job's format holds them, and no in `extract`.
     block_size: cells per block and axis, one of BLOCK_SIZES.
     max_error: how far the reference's vertices may lie from the surface; a text is parsed.
     topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
@@ -28,7 +28,7 @@ class Options:
 
     threads: int = 1
     cap: bool = False
-    normals: bool = False
+    normals: bool | None = None
     block_size: int | None = None
     max_error: MaxError | None = None
     topology: str | None = None
@@ -57,6 +57,7 @@ class Job:
     format: of the outputs.
     backend: by name, or None for the default of the field.
     space: of the outputs, "native" for the file's own.
+    offset: the point that vertices are written about; a text is parsed.
     reference: set marching cubes beside each surface.
     require: names out of requirements.REQUIREMENTS; max_triangles: a further one.
     ambiguities: where the ambiguous faces go, for a job of one target.
@@ -71,9 +72,19 @@ class Job:
     options: Options = field(default_factory=Options)
     read_options: ReadOptions = field(default_factory=ReadOptions)
     space: Space = "native"
+    offset: About | None = None
     reference: bool = True
     require: tuple[str, ...] = ()
     max_triangles: int | None = None
     ambiguities: Path | None = None
     if_changed: bool = False
     force: bool = False
+
+    def __post_init__(self) -> None:
+        if isinstance(self.offset, str):
+            object.__setattr__(self, "offset", parse_about(self.offset))
+
+    @property
+    def normals(self) -> bool:
+        """Are vertex normals written? By default where the format holds them."""
+        return self.format in SHADED_FORMATS and self.options.normals is not False

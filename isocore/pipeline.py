@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from contextlib import AbstractContextManager
 from dataclasses import replace
-from hashlib import sha256
-from typing import Any, BinaryIO, cast
 
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
-from isocore.errors import FieldError, IsocoreError, OptionError, writing
+from isocore.errors import FieldError, IsocoreError, OptionError
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
-from isocore.job import STDOUT, Job, Options, Target
+from isocore.job import Job, Options, Target
 from isocore.measurements import Measurements, measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
+from isocore.offset import moved_field, moved_surface, offset_of
+from isocore.outputs import format_warnings, write_target
 from isocore.readers import read
 from isocore.report.record import RunReport
-from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds, Written
+from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
 from isocore.requirements import missed
-from isocore.surface import Surface
+from isocore.surface import Point
 from isocore.timer import Timer
 from isocore.volume import Volume
 from isocore.whole_file import whole_file
-from isocore.writers import writer_for
 from isocore.writers.ply import write_ply_points
+from isocore.writers.rounding import as_read, rounded
 
 REFERENCE = "mc"
 
@@ -42,11 +40,13 @@ def convert(job: Job) -> Iterator[RunReport]:
         with timer("read"):
             source = _read(job)
             spread = histogram(source, threads=threads)
+            offset = offset_of(source, job.offset)
+            source = moved_field(source, offset)
         known = FieldFacts.of(source, spread)
         outlook = _outlook(job)
         backend, why = (job.backend, "given") if job.backend else default_backend(type(source), outlook)
         with timer("prepare"):
-            extract = prepare(source, backend, job.options, outlook)
+            extract = prepare(source, backend, replace(job.options, normals=job.normals), outlook)
         reference = _ReferenceRuns(source, backend, job)
         for target in job.targets:
             try:
@@ -54,11 +54,14 @@ def convert(job: Job) -> Iterator[RunReport]:
                     chosen = choose(target.choice, spread)
                 with timer("extract"):
                     found = extract(chosen.isovalue)
+                timer.move(found.seconds_normals, "extract", "normals")
                 with timer("measure"):
-                    measured = measure(found.surface, threads=threads)
+                    surface = moved_surface(found.surface, source, offset)
+                    surface, losses = rounded(surface, job.format, threads)
+                    measured = measure(as_read(surface, job.format, threads), threads=threads)
                 with timer("write"):
-                    written, doubts = _write(found.surface, target, job)
-                    _write_ambiguities(source, chosen.isovalue, job)
+                    written = write_target(surface, target, job)
+                    _write_ambiguities(source, chosen.isovalue, job, offset)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
@@ -66,11 +69,17 @@ def convert(job: Job) -> Iterator[RunReport]:
                     asked=_asked(job, target),
                     status="done" if measured.triangles else "empty",
                     message="" if measured.triangles else _emptiness(chosen.isovalue, known),
-                    warnings=source.warnings + known.warnings + found.warnings + _border(measured, known) + doubts,
+                    warnings=source.warnings
+                    + known.warnings
+                    + found.warnings
+                    + format_warnings(job)
+                    + _border(measured, known)
+                    + losses,
                     written=written,
                     field=known,
                     isovalue=chosen.isovalue,
                     chosen=chosen.why,
+                    offset=offset,
                     backend=backend,
                     backend_chosen=why,
                     surface=measured,
@@ -78,7 +87,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
-                del found
+                del found, surface
                 yield requirements_checked(reference.compared(run), job)
             done += 1
     except (IsocoreError, MemoryError) as error:
@@ -115,12 +124,13 @@ def _asked(job: Job, target: Target) -> Asked:
         options=Given(
             threads=options.threads,
             cap=options.cap,
-            normals=options.normals,
+            normals=job.normals,
             block_size=options.block_size,
             max_error=None if options.max_error is None else str(options.max_error),
             topology=options.topology,
             format=job.format,
             space=job.space,
+            offset=None if job.offset is None else str(job.offset),
         ),
     )
 
@@ -154,39 +164,7 @@ def _border(measured: Measurements, known: FieldFacts) -> tuple[str, ...]:
     return (f"the surface is open where it meets the volume's border ({edges:,} edges); --cap closes it",)
 
 
-class _Hashed:
-    """A stream that keeps the hash and the length of what passes."""
-
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-        self._hash = sha256()
-        self._bytes = 0
-
-    def write(self, data: Any) -> int:
-        """Pass the data on."""
-        self._hash.update(data)
-        self._bytes += memoryview(data).nbytes
-        return self._stream.write(data)
-
-    def written(self) -> Written:
-        """Hash and length of everything so far."""
-        return Written(sha256=self._hash.hexdigest(), bytes=self._bytes)
-
-
-def _write(surface: Surface, target: Target, job: Job) -> tuple[Written, tuple[str, ...]]:
-    """Write to the target and hash what is written on its way; also the writer's warnings."""
-    writer = writer_for(target.output, job.format)
-    to_stdout = target.output == STDOUT
-    place: AbstractContextManager[BinaryIO | None] = writing("stdout") if to_stdout else whole_file(target.output)
-    with place as opened:
-        stream = _Hashed(opened or sys.stdout.buffer)
-        warnings = writer(cast(BinaryIO, stream), surface, job.options.threads)
-        if to_stdout:
-            sys.stdout.buffer.flush()
-    return stream.written(), warnings
-
-
-def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
+def _write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | None) -> None:
     if job.ambiguities is None:
         return
     if not isinstance(source, Volume):
@@ -194,7 +172,13 @@ def _write_ambiguities(source: Field, isovalue: float, job: Job) -> None:
     found = find_ambiguities(source, isovalue, threads=job.options.threads)
     with whole_file(job.ambiguities) as stream:
         write_ply_points(
-            stream, found.points, "saddle_distance", found.distances, space=found.space, unit=found.unit
+            stream,
+            found.points,
+            "saddle_distance",
+            found.distances,
+            space=found.space,
+            unit=found.unit,
+            offset=offset if offset and any(offset) else None,
         )
 
 

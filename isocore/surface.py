@@ -11,6 +11,8 @@ import numpy.typing as npt
 from isocore import _kernels
 from isocore.volume import Space
 
+Point = tuple[float, float, float]
+
 # float32 is enough while its steps are below this part of the shortest voxel edge: half of the distance
 # that vertices keep from grid points, so that no two fall together, whichever way the affine turns them.
 _COARSEST_STEP = 2.0**-11
@@ -24,6 +26,7 @@ class Surface:
     triangles: (t, 3) int32, indices into vertices.
     normals: (v, 3) float32, unit length, pointing outside; or None.
     space, unit: as in Volume.
+    offset: the point of the world that vertices are measured from; None is its origin.
     """
 
     vertices: npt.NDArray[Any]
@@ -31,6 +34,7 @@ class Surface:
     normals: npt.NDArray[np.float32] | None = None
     space: Space = "native"
     unit: str = ""
+    offset: Point | None = None
 
     def __post_init__(self) -> None:
         real = self.vertices.dtype.name in ("float32", "float64")
@@ -88,7 +92,7 @@ def place_fresh(
     frame that `affine` (4, 4) starts from.
     """
     rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
-    dtype = _coordinate_type(vertices, rows)
+    dtype = coordinate_type(vertices, rows)
     fits = vertices.dtype == dtype and vertices.flags.writeable
     out = vertices if fits else np.empty(vertices.shape, dtype)
     _kernels.place(vertices, rows, out, threads)
@@ -99,7 +103,7 @@ def place_fresh(
     return Surface(out, triangles, normals, space, unit)
 
 
-def _coordinate_type(vertices: npt.NDArray[Any], rows: npt.NDArray[np.float64]) -> type:
+def coordinate_type(vertices: npt.NDArray[Any], rows: npt.NDArray[np.float64]) -> type:
     """float32, or float64 where the steps of float32 are too coarse for the shortest voxel edge.
 
     vertices: in index space, so that a column of `rows` (3, 4) is a voxel edge; float64 ones stay so.

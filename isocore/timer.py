@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 from isocore.report.sections import Seconds
 
-Stage: TypeAlias = Literal["read", "prepare", "extract", "measure", "write"]
+Stage: TypeAlias = Literal["read", "prepare", "extract", "normals", "measure", "write"]
 
 
 class Timer:
@@ -25,6 +25,11 @@ class Timer:
             yield
         finally:
             self._seconds[stage] = self._seconds.get(stage, 0.0) + (perf_counter() - start)
+
+    def move(self, seconds: float, from_: Stage, to: Stage) -> None:
+        """Count seconds of one stage for another."""
+        self._seconds[from_] = self._seconds.get(from_, 0.0) - seconds
+        self._seconds[to] = self._seconds.get(to, 0.0) + seconds
 
     def taken(self) -> Seconds:
         """The seconds since the last call: what a job pays once stands in its first record only."""

@@ -21,6 +21,8 @@ KERNELS = {"_kernels", "_processor"}
 FIELD_ROOMS = {"histogram", "isovalue", "extrema", "field_facts"}
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
+#: What becomes of coordinates on their way to the file.
+PLACES = {"offset", "outputs"}
 #: Importing one file of a batch tells nothing about another: each says for itself what it knows of the others.
 BATCHED = NOUNS | {"report", "whole_file"}
 
@@ -56,7 +58,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "methods": NOUNS | KERNELS | {"whole_file"},
     "backends": NOUNS | {"methods"},
     "benches": NOUNS | KERNELS | {"methods"},
-    "pipeline": NOUNS | FIELD_ROOMS | STAGES | {"methods/index_file"},
+    "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
+    "outputs": NOUNS | {"report/sections", "whole_file", "writers"},
+    "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),
     "batches/frames": set(),

@@ -49,7 +49,10 @@ def options_hash(job: Job, target: Target) -> str:
     """
     options = _FIRST_KEYS | {item.name: getattr(job.options, item.name) for item in fields(Options)}
     del options["threads"]
-    asked = [options, asdict(job.read_options), job.format, job.backend, job.space, target.choice]
+    options["normals"] = job.normals
+    asked: list[Any] = [options, asdict(job.read_options), job.format, job.backend, job.space, target.choice]
+    if job.offset is not None:
+        asked.append(job.offset)
     return sha256(json.dumps(asked, default=str).encode()).hexdigest()
 
 

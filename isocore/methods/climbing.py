@@ -57,8 +57,8 @@ def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extr
             volume.spacing,
             ranges=ranges,
         )
-        surface = placed_surface(volume, climbed.vertices, climbed.triangles, options)
-        return Extraction(surface, climbing_findings(climbed.facts, bound, volume.unit))
+        surface, seconds = placed_surface(volume, climbed.vertices, climbed.triangles, options)
+        return Extraction(surface, climbing_findings(climbed.facts, bound, volume.unit), seconds_normals=seconds)
 
     return extract
 

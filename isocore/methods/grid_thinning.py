@@ -23,7 +23,7 @@ def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
 
     def extract(isovalue: float) -> Extraction:
         walked = index.propagate(volume.stored_isovalue(isovalue), options.threads)
-        surface = placed_surface(volume, walked.vertices, walked.triangles, options)
+        surface, seconds = placed_surface(volume, walked.vertices, walked.triangles, options)
         search = Search(
             cells=index.cells,
             extrema=index.extrema,
@@ -33,7 +33,7 @@ def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
             intersected=walked.visited,
         )
         ambiguous = Ambiguous(faces=walked.ambiguous_faces, cells=walked.ambiguous_cells)
-        return Extraction(surface, Findings(search=search, ambiguous=ambiguous), advice)
+        return Extraction(surface, Findings(search=search, ambiguous=ambiguous), advice, seconds)
 
     return extract
 

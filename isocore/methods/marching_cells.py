@@ -5,6 +5,7 @@ Doi, Koide 1991; Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991.
 
 from __future__ import annotations
 
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
-from isocore.surface import Surface
+from isocore.surface import Point, Surface
 
 # float32 is enough while its steps are below this part of a cell: some cells are smaller than the mean one, and
 # vertices keep 2^-10 of an edge away from its ends.
@@ -31,9 +32,9 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
         marched = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single
         )
-        surface = mesh_surface(mesh, marched.vertices, marched.triangles, normals=options.normals)
+        surface, seconds = mesh_surface(mesh, marched.vertices, marched.triangles, normals=options.normals)
         search = Search(cells=mesh.cells, visited=mesh.cells, intersected=marched.intersected)
-        return Extraction(surface, Findings(search=search), warnings)
+        return Extraction(surface, Findings(search=search), warnings, seconds)
 
     return extract
 
@@ -43,13 +44,14 @@ def mesh_warnings(options: Options) -> tuple[str, ...]:
     return (_CAP,) if options.cap else ()
 
 
-def single_precision(mesh: CellMesh) -> bool:
+def single_precision(mesh: CellMesh, offset: Point = (0.0, 0.0, 0.0)) -> bool:
     """Are the steps of float32 fine enough for the mesh's mean cell, wherever a surface lies? Paid once per mesh.
 
-    The mean cell is the cube as large as the cells would be on average, were the mesh's box full of them.
+    The mean cell is the cube as large as the cells would be on average, were the mesh's box full of them. offset: the
+    point that coordinates are measured from.
     """
     box = np.array(_kernels.bounds(mesh.points)).reshape(2, 3)  # numpy takes ten times as long for it
-    extents, farthest = box[1] - box[0], np.abs(box).max()
+    extents, farthest = box[1] - box[0], np.abs(box - offset).max()
     if not farthest < np.finfo(np.float32).max:
         return False
     cell = np.cbrt(np.prod(np.maximum(extents, extents.max() * 1e-6)) / mesh.cells)
@@ -57,8 +59,13 @@ def single_precision(mesh: CellMesh) -> bool:
 
 
 def mesh_surface(
-    mesh: CellMesh, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], *, normals: bool
-) -> Surface:
-    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface."""
+    mesh: CellMesh, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], *, normals: bool | None
+) -> tuple[Surface, float]:
+    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface.
+
+    And the seconds that its normals took, where they are asked for.
+    """
+    start = perf_counter()
     directions = _kernels.triangle_normals(vertices, triangles) if normals else None
-    return Surface(vertices, triangles, directions, unit=mesh.unit)
+    seconds = perf_counter() - start
+    return Surface(vertices, triangles, directions, unit=mesh.unit), seconds

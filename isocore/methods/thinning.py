@@ -50,7 +50,7 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             index = build_index(mesh)
             ready = ready_index(mesh, index, built=True)
             walked = ready.propagate(isovalue, options.threads, single=single)
-        surface = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
+        surface, seconds = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
         search = Search(
             cells=mesh.cells,
             extrema=index.extrema,
@@ -60,7 +60,7 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             intersected=walked.visited,
         )
         told = (*mesh_warnings(options), *warnings, *_oddities(index))
-        return Extraction(surface, Findings(search=search), told)
+        return Extraction(surface, Findings(search=search), told, seconds)
 
     return extract
 

@@ -26,7 +26,7 @@ SCHEMA = 1
 KEYS = (
     "source", "output", "status", "message", "warnings", "missed", "sha256", "bytes",
     "kind", "shape", "dtype", "spacing", "space", "unit", "volume", "field", "range", "nonfinite", "histogram",
-    "isovalue", "asked", "chosen", "backend", "backend_chosen", "options", "surface", "reference", "ratio",
+    "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen", "options", "surface", "reference", "ratio",
     "error", "search", "ambiguous", "climbing", "facts", "seconds", "peak_rss_bytes",
 )
 
@@ -40,6 +40,7 @@ def run_as_dict(run: RunReport) -> dict[str, Any]:
         "missed": run.missed,
         "isovalue": run.isovalue,
         "chosen": run.chosen,
+        "offset": run.offset,
         "backend": run.backend,
         "backend_chosen": run.backend_chosen,
         "surface": run.surface,
@@ -79,6 +80,7 @@ def run_from_dict(record: dict[str, Any]) -> RunReport:
         field=_field(record) if record.get("kind") is not None else None,
         isovalue=record.get("isovalue"),
         chosen=record.get("chosen", ""),
+        offset=_frozen(record.get("offset")),
         backend=record.get("backend"),
         backend_chosen=record.get("backend_chosen", ""),
         surface=_optional(Measurements, record.get("surface")),

@@ -25,6 +25,7 @@ class RunReport:
 
     missed: requirements that the surface does not meet.
     isovalue: the number; chosen: how it came about. backend_chosen: the same of the backend.
+    offset: the point that vertices are written about, where one was asked for.
     peak_rss_bytes: of the job, before the reference ran; None where the system does not tell.
     """
 
@@ -37,6 +38,7 @@ class RunReport:
     field: FieldFacts | None = None
     isovalue: float | None = None
     chosen: str = ""
+    offset: tuple[float, float, float] | None = None
     backend: str | None = None
     backend_chosen: str = ""
     surface: Measurements | None = None

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Given:
-    """What was asked of backend and writer; max_error: as it was written."""
+    """What was asked of backend and writer; max_error, offset: as they were written. normals: whether they are."""
 
     threads: int
     cap: bool
@@ -20,6 +20,7 @@ class Given:
     topology: str | None = None
     format: str
     space: str
+    offset: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +70,7 @@ class Seconds:
     read: float = 0.0
     prepare: float = 0.0
     extract: float = 0.0
+    normals: float = 0.0
     measure: float = 0.0
     write: float = 0.0
     total: float = 0.0

@@ -11,17 +11,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
-from isocore.choices import FORMATS
+from isocore.choices import FORMATS, Format
 from isocore.errors import OptionError, writing
 from isocore.surface import Surface
 from isocore.whole_file import whole_file
 from isocore.writers.obj import write_obj
 from isocore.writers.ply import write_ply
+from isocore.writers.rounding import rounded
 from isocore.writers.stl import write_stl
 
-Writer = Callable[[BinaryIO, Surface, int], tuple[str, ...]]
+Writer = Callable[[BinaryIO, Surface, int], None]
 
-#: suffix -> writer(stream, surface, threads), which returns its warnings.
+#: suffix -> writer(stream, surface, threads); coordinates are rounded before (rounding.py).
 WRITERS: dict[str, Writer] = {".ply": write_ply, ".obj": write_obj, ".stl": write_stl}
 
 
@@ -33,26 +34,29 @@ def write(
     The file appears whole or not at all; missing folders are made, and an existing file is replaced.
     Raises OptionError for an unknown format, OutputError if the disk refuses.
     """
-    writer = writer_for(target, format)
+    name = format_for(target, format)
+    surface, warnings = rounded(surface, name, threads)
     with whole_file(target) as stream:
-        return tuple(f"{os.fspath(target)}: {warning}" for warning in writer(stream, surface, threads))
+        WRITERS[f".{name}"](stream, surface, threads)
+    return tuple(f"{os.fspath(target)}: {warning}" for warning in warnings)
 
 
 def write_to(stream: BinaryIO, surface: Surface, format: str, *, threads: int = 1) -> tuple[str, ...]:
     """Write `surface` to an open binary stream, such as stdout's; returns warnings."""
-    writer = writer_for("-", format)
+    name = format_for("-", format)
+    surface, warnings = rounded(surface, name, threads)
     with writing("-"):
-        warnings = writer(stream, surface, threads)
+        WRITERS[f".{name}"](stream, surface, threads)
         stream.flush()
-        return warnings
+    return warnings
 
 
-def writer_for(target: os.PathLike[str] | str, format: str | None = None) -> Writer:
-    """The writer that `format`, or else the suffix of `target`, asks for; OptionError if there is none."""
+def format_for(target: os.PathLike[str] | str, format: str | None = None) -> Format:
+    """The format that is asked for, by name or else by the suffix of `target`; OptionError if there is none."""
     name = os.fspath(target)
     suffix = Path(name).suffix.lower() if format is None else f".{format.lower()}"
-    writer = WRITERS.get(suffix)
-    if writer is not None:
-        return writer
+    for known in FORMATS:
+        if suffix == f".{known}":
+            return known
     seen = f"{format or suffix} is not a format isocore writes" if format or suffix else "has no suffix"
     raise OptionError(f"{name}: {seen}; choose one of {', '.join(sorted(FORMATS))} with --format")

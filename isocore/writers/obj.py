@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, BinaryIO
-
-import numpy as np
-import numpy.typing as npt
+from typing import BinaryIO
 
 from isocore import _kernels
 from isocore.surface import Surface
-from isocore.writers.pieces import merge_warning, pieces
+from isocore.writers.pieces import offset_text, pieces
 
 
-def write_obj(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ...]:
-    """Write vertices, normals if any, triangles; warns if nine digits cannot tell vertices apart."""
+def write_obj(stream: BinaryIO, surface: Surface, threads: int) -> None:
+    """Write vertices, normals if any, triangles."""
     stream.write(_header(surface).encode("ascii"))
     for vertices in pieces(surface.vertices):
         stream.write(_kernels.format_rows("v", vertices, threads))
@@ -22,9 +19,6 @@ def write_obj(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ..
             stream.write(_kernels.format_rows("vn", normals, threads))
     for triangles in pieces(surface.triangles):
         stream.write(_kernels.format_faces(triangles, surface.normals is not None, threads))
-    if surface.vertices.dtype == np.float32:
-        return ()
-    return merge_warning(surface.vertices, _nine_digits(surface.vertices), "OBJ keeps nine digits")
 
 
 def _header(surface: Surface) -> str:
@@ -33,13 +27,7 @@ def _header(surface: Surface) -> str:
         lines.append(f"# SPACE={surface.space.upper()}")
     if surface.unit:
         lines.append(f"# vertex coordinates are measured in units, where 1 unit = 1.000000 {surface.unit}")
+    if surface.offset is not None:
+        lines.append(f"# offset {offset_text(surface.offset)}: the point that coordinates are measured from")
     return "\n".join([*lines, ""])
 
-
-def _nine_digits(values: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """`values` as their text with nine significant digits would be read."""
-    with np.errstate(divide="ignore"):
-        exponent = np.floor(np.log10(np.abs(values)))
-    step = 10.0 ** (np.where(np.isfinite(exponent), exponent, 0) - 8)
-    rounded: npt.NDArray[np.float64] = np.rint(values / step) * step
-    return rounded

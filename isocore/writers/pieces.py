@@ -1,12 +1,13 @@
-"""Cutting a surface into pieces, so that a writer needs little memory besides the surface itself."""
+"""What writers share: a surface cut into pieces, so that they need little memory besides it; the text of an offset."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
+
+from isocore.surface import Point
 
 _ROWS = 1 << 17
 
@@ -17,17 +18,6 @@ def pieces(rows: npt.NDArray[Any]) -> Iterator[npt.NDArray[Any]]:
         yield rows[begin : begin + _ROWS]
 
 
-def merge_warning(before: npt.NDArray[Any], after: npt.NDArray[Any], cause: str) -> tuple[str, ...]:
-    """Say how many vertices fall on another one when `before` (v, 3) is rounded to `after` (v, 3)."""
-    lost = _distinct(before) - _distinct(after)
-    if not lost:
-        return ()
-    return (
-        f"{cause}, so {lost:,} of {len(before):,} vertices fall on another one and programs that weld "
-        "by position find holes; write PLY, which keeps float64",
-    )
-
-
-def _distinct(rows: npt.NDArray[Any]) -> int:
-    ordered = rows[np.lexsort(rows.T)]
-    return len(rows) and 1 + int((ordered[1:] != ordered[:-1]).any(axis=1).sum())
+def offset_text(offset: Point, between: str = " ") -> str:
+    """The three numbers, each with the digits that tell it from its neighbours: 448000 5412000 300."""
+    return between.join(repr(float(number)).removesuffix(".0") for number in offset)

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
-from isocore.surface import Surface
-from isocore.writers.pieces import pieces
+from isocore.surface import Point, Surface
+from isocore.writers.pieces import offset_text, pieces
 
 
-def write_ply(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ...]:
+def write_ply(stream: BinaryIO, surface: Surface, threads: int) -> None:
     """Write vertices, normals where there are any, and triangles."""
-    stream.write(_header(surface.space, surface.unit, _elements(surface)))
+    stream.write(_header(surface.space, surface.unit, surface.offset, _elements(surface)))
     if surface.normals is None:
         stream.write(surface.vertices.astype(surface.vertices.dtype.newbyteorder("<"), copy=False).data)
     else:
@@ -26,28 +26,36 @@ def write_ply(stream: BinaryIO, surface: Surface, threads: int) -> tuple[str, ..
             stream.write(rows.data)
     for triangles in pieces(surface.triangles):
         stream.write(_kernels.ply_faces(triangles, threads).data)
-    return ()
 
 
 def write_ply_points(
-    stream: BinaryIO, points: npt.NDArray[Any], name: str, values: npt.NDArray[Any], *, space: str, unit: str
+    stream: BinaryIO,
+    points: npt.NDArray[Any],
+    name: str,
+    values: npt.NDArray[Any],
+    *,
+    space: str,
+    unit: str,
+    offset: Point | None = None,
 ) -> None:
     """Write points (n, 3) with a value each, the scalar property `name` (n,); all float32."""
     row: Any = np.dtype([("place", "<f4", 3), ("value", "<f4")])
     rows = np.empty(len(points), row)
     rows["place"], rows["value"] = points, values
     properties = (f"property float {each}" for each in ("x", "y", "z", name))
-    stream.write(_header(space, unit, (f"element vertex {len(rows)}", *properties)))
+    stream.write(_header(space, unit, offset, (f"element vertex {len(rows)}", *properties)))
     stream.write(rows.data)
 
 
-def _header(space: str, unit: str, elements: Iterable[str]) -> bytes:
+def _header(space: str, unit: str, offset: Point | None, elements: Iterable[str]) -> bytes:
     """The lines before the data. elements: each element and each property, as PLY writes them."""
     lines = ["ply", "format binary_little_endian 1.0"]
     if space != "native":
         lines.append(f"comment SPACE={space.upper()}")
     if unit:
         lines.append(f"comment units {unit}")
+    if offset is not None:
+        lines.append(f"comment offset {offset_text(offset)}")
     return "".join(f"{line}\n" for line in (*lines, *elements, "end_header")).encode("ascii")
 
 

@@ -53,7 +53,7 @@ def _read_ply(data: bytes) -> Mesh:
 def _read_stl(data: bytes) -> Mesh:
     count = int(np.frombuffer(data, "<u4", 1, 80)[0])
     facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-    corners = np.frombuffer(data, facet, count, 84)["corners"].reshape(-1, 3)
+    corners = np.frombuffer(data, facet, count, 84)["corners"].reshape(-1, 3) + np.float32(0)
     keys = np.ascontiguousarray(corners).view(np.dtype((np.void, 12))).ravel()
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
     return corners[first].astype(np.float32), number.reshape(-1, 3).astype(np.int32)

@@ -13,6 +13,7 @@
 #include "surface/normals.hpp"
 #include "surface/place.hpp"
 #include "surface/size.hpp"
+#include "surface/weld.hpp"
 
 namespace isocore::python {
 namespace {
@@ -94,13 +95,13 @@ nb::bytes make_text(const Make& make) {
 }
 
 template <class Make>
-nb::object make_records(const Make& make) {
-    Array<std::uint8_t> bytes;
+nb::object make_records(const Make& make, std::size_t columns = 0) {
+    decltype(make()) records;
     {
         nb::gil_scoped_release unlocked;
-        bytes = make();
+        records = make();
     }
-    return to_numpy(std::move(bytes));
+    return to_numpy(std::move(records), columns);
 }
 
 template <class Real>
@@ -128,6 +129,12 @@ void bind_real(nb::module_& module) {
             return make_records([&] { return stl_records(mesh_view(vertices, triangles), threads); });
         },
         arg("vertices").noconvert(), arg("triangles").noconvert(), arg("threads") = 1);
+    module.def(
+        "weld",
+        [](const Rows<Real, 3>& vertices, int threads) {
+            return make_records([&] { return weld(vertices.data(), vertices.shape(0), threads); });
+        },
+        arg("vertices").noconvert(), arg("threads") = 1);
 }
 
 template <class Sample>
@@ -165,6 +172,12 @@ void bind_surface(nb::module_& module) {
             turn_normals(normals.data(), normals.shape(0), to_affine(affine), threads);
         },
         arg("normals").noconvert(), arg("affine").noconvert(), arg("threads") = 1);
+    module.def(
+        "nine_digits",
+        [](const Rows<double, 3>& rows, int threads) {
+            return make_records([&] { return nine_digits(rows.data(), 3 * rows.shape(0), threads); }, 3);
+        },
+        arg("rows").noconvert(), arg("threads") = 1);
     module.def(
         "format_faces",
         [](const Triangles& triangles, bool with_normals, int threads) {

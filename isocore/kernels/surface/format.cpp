@@ -2,11 +2,14 @@
 #include "surface/format.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "common/parallel.hpp"
@@ -29,6 +32,17 @@ char* append(char* to, double value) {
     std::replace(to, end, ',', '.');
     return end;
 #endif
+}
+
+// The number that text written by append() stands for.
+double number_in(const char* text, const char* end) {
+    double value = 0;
+#if defined(__cpp_lib_to_chars)
+    std::from_chars(text, end, value);
+#else
+    value = std::strtod(std::string(text, end).c_str(), nullptr);
+#endif
+    return value;
 }
 
 char* append(char* to, std::int32_t value) { return std::to_chars(to, to + kLongestNumber, value).ptr; }
@@ -81,6 +95,17 @@ std::string format_rows(const char* tag, const Real* rows, std::size_t count, in
         *to++ = '\n';
         return to;
     });
+}
+
+Array<double> nine_digits(const double* numbers, std::size_t count, int threads) {
+    Array<double> rounded(count);
+    parallel_for(threads, (count + kBlock - 1) / kBlock, [&](std::size_t block) {
+        std::array<char, kLongestNumber + 1> text;
+        for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+            rounded[i] = number_in(text.data(), append(text.data(), numbers[i]));
+        }
+    });
+    return rounded;
 }
 
 std::string format_faces(const std::int32_t* triangles, std::size_t count, bool with_normals, int threads) {

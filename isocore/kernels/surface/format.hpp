@@ -13,6 +13,9 @@ namespace isocore {
 template <class Real>
 std::string format_rows(const char* tag, const Real* rows, std::size_t count, int threads);
 
+// `count` numbers as a reader finds them in the text of format_rows: rounded to nine significant digits.
+Array<double> nine_digits(const double* numbers, std::size_t count, int threads);
+
 // "f a b c" lines, counting from one; "f a//a b//b c//c" with normals.
 std::string format_faces(const std::int32_t* triangles, std::size_t count, bool with_normals, int threads);
 

@@ -16,16 +16,11 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/prefetch.hpp"
 #include "tables/mesh_cases.hpp"
 #include "thinning/mesh/shared_cells.hpp"
 #include "thinning/mesh/thinning.hpp"
 #include "thinning/range_lookup.hpp"
-
-#if defined(__GNUC__) || defined(__clang__)
-#define ISOCORE_PREFETCH(address) __builtin_prefetch(address)
-#else
-#define ISOCORE_PREFETCH(address) static_cast<void>(address)
-#endif
 
 namespace isocore::thinning {
 
