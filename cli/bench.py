@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from .console import screen_width, styled
+from isocore.errors import printable
+
+from .console import say, screen_width, styled, unarmed
 from .options import PATH, Reading, default_threads, reading_options
 from .table import columns_of, set_table
 
@@ -80,13 +82,13 @@ def bench(
         try:
             tables = _tables(path, wanted)
         except IsocoreError as error:
-            click.echo(f"isocore: {error}", err=True)
+            say(f"isocore: {error}")
             failures += 1
             continue
         if as_json:
             records.append({"source": str(path), "tables": [_record(table) for table in tables]})
         else:
-            click.echo("\n\n".join([styled(str(path), bold=True), *map(_text, tables)]))
+            click.echo("\n\n".join([styled(unarmed(printable(path, stray=True)), bold=True), *map(_text, tables)]))
     if as_json:
         import json
 

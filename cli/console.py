@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from threading import Lock
 from types import TracebackType
@@ -10,11 +11,16 @@ from typing import TYPE_CHECKING, Any, Self, TextIO
 
 import click
 
-from .table import columns_of, printable, set_table, shortened
+from isocore.errors import printable
+
+from .table import columns_of, set_table, shortened
 
 if TYPE_CHECKING:
     from isocore.job import Job
     from isocore.report import BatchReport
+
+#: What GitHub reads as a command: two colons that begin a line, and an older form anywhere.
+_COMMAND = re.compile(r"^\s*::|##\[")
 
 #: A run shorter than this shows no progress bar.
 _PATIENCE_SECONDS = 1.0
@@ -80,7 +86,7 @@ class Progress:
             if self._bar is None:
                 say(text)
             else:
-                self._bar.console.print(text, markup=False, highlight=False, emoji=False, soft_wrap=True)
+                self._bar.console.print(printable(text), markup=False, highlight=False, emoji=False, soft_wrap=True)
 
     def _update(self) -> None:
         with self._lock:
@@ -110,9 +116,22 @@ class Progress:
             self._bar = bar
 
 
-def say(text: str) -> None:
-    """A line for people, on stderr."""
-    click.echo(text, err=True)
+def say(text: str, **style: Any) -> None:
+    """One line for people, on stderr, whatever names of files and fields it holds."""
+    line = unarmed(printable(text))
+    click.echo(styled(line, **style) if style else line, err=True)
+
+
+def tell(text: str) -> None:
+    """One line of results, on stdout, which gives a name's bytes back also where they are no text."""
+    click.echo(unarmed(printable(text, stray=True)))
+
+
+def unarmed(text: str) -> str:
+    """The line, so that GitHub takes it for no command of its own, whatever names it holds; as it is elsewhere."""
+    if os.environ.get("GITHUB_ACTIONS") != "true":
+        return text
+    return _COMMAND.sub(lambda found: found[0].replace(":", "\\x3a", 1).replace("[", "\\x5b"), text)
 
 
 def screen_width(stream: TextIO) -> int | None:
@@ -138,7 +157,7 @@ def say_table(batch: BatchReport) -> None:
 
     columns = columns_of(HEADINGS, RIGHT, LEAVING, shrinks=HEADINGS[0])
     headings, *lines = set_table(columns, summary_rows(batch), screen_width(sys.stderr))
-    say(styled(headings, bold=True))
+    say(headings, bold=True)
     for line, run in zip(lines, batch.outputs, strict=True):
-        say(styled(line, fg="red") if run.status == "failed" or run.missed else line)
+        say(line, **({"fg": "red"} if run.status == "failed" or run.missed else {}))
     say(totals_line(batch))

@@ -37,8 +37,10 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
     if options.dry_run:
         from isocore.batches.dry_run import plan_lines
 
+        from .console import tell
+
         for line in plan_lines(jobs):
-            click.echo(line)
+            tell(line)
         return
     from .running import run_and_report
 

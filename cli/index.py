@@ -7,6 +7,7 @@ from time import perf_counter
 
 import click
 
+from .console import say, tell
 from .options import PATH, Reading, reading_options
 
 
@@ -25,9 +26,9 @@ def index(context: click.Context, files: tuple[Path, ...], reading: Reading) -> 
     failures = 0
     for path in files:
         try:
-            click.echo(_index(path, reading))
+            tell(_index(path, reading))
         except IsocoreError as error:
-            click.echo(f"isocore: {error}", err=True)
+            say(f"isocore: {error}")
             failures += 1
     context.exit(1 if failures else 0)
 

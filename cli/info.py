@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import screen_width, styled
+from isocore.errors import printable
+
+from .console import say, screen_width, styled, unarmed
 from .options import PATH, Reading, default_threads, reading_options
-from .table import cells_of, folded, printable
+from .table import cells_of, folded
 
 if TYPE_CHECKING:
     from isocore.describe import Description
@@ -41,13 +43,13 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
         try:
             found = describe(path, reading.read_options(), threads=default_threads())
         except IsocoreError as error:
-            click.echo(f"isocore: {error}", err=True)
+            say(f"isocore: {error}")
             failures += 1
             continue
         if as_json:
             described.append(_record(path, found))
         else:
-            click.echo("\n".join(_lines(path, found, screen_width(sys.stdout))))
+            click.echo("\n".join(map(unarmed, _lines(path, found, screen_width(sys.stdout)))))
     if as_json:
         from isocore.report.texts import json_text
 
@@ -65,7 +67,7 @@ def _record(path: Path, found: Description) -> dict[str, Any]:
 
 
 def _lines(path: Path, found: Description, width: int | None) -> list[str]:
-    lines = [styled(printable(str(path)), bold=True)]
+    lines = [styled(unarmed(printable(path, stray=True)), bold=True)]
     facts = [(key, _line(key, value)) for key, value in found.facts.items() if _worth_a_line(key, value)]
     for key, text in [*facts, *(("warning", warning) for warning in found.facts["warnings"])]:
         lines += folded(f"  {key:<12} ", text, width)

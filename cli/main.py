@@ -10,8 +10,9 @@ from types import FrameType
 
 import click
 
-from isocore.errors import IsocoreError, OptionError
+from isocore.errors import IsocoreError, OptionError, printable
 
+from .console import say, unarmed
 from .names import speak_any_name
 
 #: Each command is a file of its name, imported only when it is called or described.
@@ -82,18 +83,19 @@ def main() -> None:
     except click.exceptions.Exit as wish:
         code = wish.exit_code
     except click.ClickException as error:
+        error.message = unarmed(printable(error.message))
         error.show()
         code = WRONG_COMMAND
     except OptionError as error:
-        click.echo(f"isocore: {error}", err=True)
+        say(f"isocore: {error}")
         code = WRONG_COMMAND
     except IsocoreError as error:
-        click.echo(f"isocore: {error}", err=True)
+        say(f"isocore: {error}")
         code = FAILED
     except ImportError as error:
         if error.name != "isocore._kernels":
             raise
-        click.echo(f"isocore: {error}", err=True)
+        say(f"isocore: {error}")
         code = FAILED
     except (KeyboardInterrupt, click.exceptions.Abort):
         click.echo("isocore: interrupted", err=True)

@@ -216,4 +216,5 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-PATH = click.Path(path_type=Path)
+#: Whether a file is there and may be read is found where it is read: one that may not be stops no others.
+PATH = click.Path(path_type=Path, readable=False)

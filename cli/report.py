@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from .console import say
 from .options import PATH, Memory
 
 #: Of the columns of a comparison: whether set to the right, in which place it leaves a narrow screen, and whether it
@@ -71,7 +72,7 @@ def report(
         click.echo("\n".join(set_table(columns, comparison_rows(*batches), screen_width(sys.stdout))))
         broken = broken_limits(batches[0], batches[1], parsed)
         for line in broken:
-            click.echo(f"isocore: {line}", err=True)
+            say(f"isocore: {line}")
         context.exit(3 if broken else 0)
     batch = merged(batches)
     unwritten = False

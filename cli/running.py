@@ -8,9 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
 
+import click
+
 from isocore.batches.depfile import depfile_text
 from isocore.batches.run import Batch, run_jobs
-from isocore.errors import IsocoreError, one_line
+from isocore.errors import IsocoreError, one_line, printable
 from isocore.job import Job, Target
 from isocore.memory import free_bytes
 from isocore.report import BatchReport, RunReport, github_annotations, save_report
@@ -18,7 +20,6 @@ from isocore.whole_file import whole_file
 
 from .console import Progress, say, say_table
 from .convert_options import ConvertOptions
-from .table import printable
 from .warned import Warned, said_at_once, warnings_of
 
 #: A report that takes longer to save than this is left for so many times as long.
@@ -104,12 +105,12 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
             records.finish()
             progress.stop()
             if not options.verbose:
-                _say_warnings(warned, [path for path in options.reports if path not in records.unsaved])
+                _say_warnings(warned, options)
     batch = records.batch()
     unwritten = [*records.unsaved.values(), *_write_depfile(jobs, options.depfile)]
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in github_annotations(batch):
-            say(line)
+            click.echo(line, err=True)
     if not options.quiet:
         say_table(batch)
     for line in unwritten:
@@ -136,11 +137,11 @@ def _in_full(run: RunReport) -> list[str]:
     return [printable(done), *(f"isocore: warning: {printable(f'{run.source}: {text}')}" for text in warnings)]
 
 
-def _say_warnings(warned: Warned, saved: list[Path]) -> None:
+def _say_warnings(warned: Warned, options: ConvertOptions) -> None:
     for line in warned.lines():
         say(line)
     if warned.several:
-        listed = printable(str(saved[0])) if saved else "--report FILE or -v"
+        listed = str(options.reports[0]) if options.reports else "--report FILE or -v"
         say(f"isocore: {listed} lists which warning is about which surface")
 
 

@@ -6,6 +6,8 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from isocore.errors import printable
+
 _GAP = "  "
 _DOTS = "..."
 #: A name is shortened to this before a column has to leave; further only where none is left that may.
@@ -134,18 +136,6 @@ def cells_of(text: str) -> int:
         return len(text)
     widths = (0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in text)
     return sum(widths)
-
-
-def printable(text: str) -> str:
-    """A text that cannot move the cursor or break a line: what is no character to be seen is spelt out.
-
-    The bytes of a name that is no UTF-8, which Python holds as surrogates, pass: stdout and stderr give them back.
-    """
-    if text.isprintable():
-        return text
-    return "".join(
-        c if c.isprintable() or "\udc80" <= c <= "\udcff" else c.encode("unicode_escape").decode() for c in text
-    )
 
 
 def folded(head: str, text: str, width: int | None) -> list[str]:

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from .table import printable
+from isocore.errors import printable
 
 if TYPE_CHECKING:
     from isocore.report import RunReport

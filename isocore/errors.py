@@ -6,7 +6,8 @@
       OptionError    the request makes no sense
       OutputError    the result cannot be written
 
-A message is one line: the path first, then what happened, then what to do.
+A message is one line: the path first, then what happened, then what to do. Whatever a file or its name brings into
+it, it is printable and at most LONGEST characters; a report's `source` and `output` hold the paths as they are.
 """
 
 from __future__ import annotations
@@ -14,13 +15,23 @@ from __future__ import annotations
 import gzip
 import lzma
 import os
+import unicodedata
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+#: Characters of a message, and of a path that has to make room in one.
+LONGEST = 300
+_SHORTEST_PATH = 80
+#: What Python makes of bytes of a name that are not in the system's encoding.
+_STRAY_BYTES = frozenset(map(chr, range(0xDC80, 0xDD00)))
+
 
 class IsocoreError(Exception):
-    """Anything isocore refuses, with a message fit for a user."""
+    """Anything isocore refuses, with a message fit for a user: one printable line."""
+
+    def __init__(self, message: object = "") -> None:
+        super().__init__(shortened(message))
 
 
 class InputError(IsocoreError):
@@ -39,10 +50,56 @@ class OutputError(IsocoreError):
     """The result cannot be written."""
 
 
+def printable(text: object, *, stray: bool = False) -> str:
+    """The text on one line: what would move a cursor, turn a line around or end it is shown as its escape.
+
+    stray: leave the bytes of a name that are no text (PEP 383) as they are, for a stream that gives them back.
+    """
+    found = str(text)
+    if found.isprintable():
+        return found
+    return "".join(one if stray and one in _STRAY_BYTES else _shown(one) for one in found)
+
+
+def shortened(text: object) -> str:
+    """As printable, and cut to what a message may be: first inside its path, since the other end says what to do."""
+    found = str(text)
+    if len(found) > 4 * LONGEST:  # no megabyte is made printable first
+        found = found[: 2 * LONGEST] + found[-2 * LONGEST :]
+    found = printable(found)
+    if len(found) <= LONGEST:
+        return found
+    path, colon, rest = found.partition(": ")
+    return _cut(_cut(path, max(LONGEST - len(colon) - len(rest), _SHORTEST_PATH)) + colon + rest, LONGEST)
+
+
+def about(path: object, text: object, *others: object) -> str:
+    """The message with the path before it, unless it starts with that or one of the others already."""
+    message = shortened(text)
+    for known in (path, *others):
+        start = printable(known)
+        if message.startswith(f"{start}:" if len(start) <= _SHORTEST_PATH else start[: _SHORTEST_PATH // 3]):
+            return message
+    return shortened(f"{path}: {text}")
+
+
 def one_line(error: BaseException) -> str:
     """A foreign exception's text on one line, never empty."""
-    text = " ".join(str(error).split())
+    text = shortened(" ".join(str(error).split()))
     return text or type(error).__name__
+
+
+def _cut(text: str, most: int) -> str:
+    """Without its middle where it is longer than `most`."""
+    return text if len(text) <= most else f"{text[: most // 3]} ... {text[most // 3 + 5 - most :]}"
+
+
+def _shown(character: str) -> str:
+    if character.isprintable() or unicodedata.category(character) == "Zs":
+        return character
+    if character in _STRAY_BYTES:
+        return f"\\x{ord(character) - 0xDC00:02x}"
+    return repr(character)[1:-1]
 
 
 @contextmanager
@@ -75,9 +132,9 @@ def reading(path: os.PathLike[str] | str) -> Iterator[None]:
     except RecursionError as error:
         raise InputError(f"{name}: is nested too deeply to be read") from error
     except Exception as error:
-        raise InputError(
-            f"{name}: cannot be read ({one_line(error)}); check that it is what its suffix says"
-        ) from error
+        system = error.strerror if isinstance(error, OSError) else None
+        what, todo = system or one_line(error), "the path and the disk" if system else "that it is what its suffix says"
+        raise InputError(f"{name}: cannot be read ({what}); check {todo}") from error
 
 
 @contextmanager
@@ -93,4 +150,17 @@ def writing(path: os.PathLike[str] | str) -> Iterator[None]:
         raise OutputError(f"{name}: cannot be written ({reason}); check the folder and the free space") from error
 
 
-__all__ = ["FieldError", "InputError", "IsocoreError", "OptionError", "OutputError", "one_line", "reading", "writing"]
+__all__ = [
+    "LONGEST",
+    "FieldError",
+    "InputError",
+    "IsocoreError",
+    "OptionError",
+    "OutputError",
+    "about",
+    "one_line",
+    "printable",
+    "reading",
+    "shortened",
+    "writing",
+]

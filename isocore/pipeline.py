@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
-from isocore.errors import FieldError, IsocoreError, OptionError
+from isocore.errors import FieldError, IsocoreError, OptionError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
@@ -98,11 +98,10 @@ def convert(job: Job) -> Iterator[RunReport]:
 def failed(job: Job, target: Target, error: BaseException, *, seconds: Seconds | None = None) -> RunReport:
     """The record of a target that came to nothing; its message starts with a path."""
     text = "does not fit into memory; free some or crop the data" if isinstance(error, MemoryError) else str(error)
-    paths = (str(job.source), str(target.output))
     return RunReport(
         asked=_asked(job, target),
         status="failed",
-        message=text if text.startswith(paths) else f"{job.source}: {text}",
+        message=about(job.source, text, target.output),
         backend=job.backend,
         seconds=seconds,
         peak_rss_bytes=peak_bytes(),

@@ -123,14 +123,15 @@ def test_junit_spells_odd_characters_as_ever() -> None:
     """Quotes, ends of lines, what looks like a tag, and what XML cannot hold; the layout is held too."""
     odd = "a'b\"<&> />\n\t\r&#9;\x00"
     held = "a&#x27;b&quot;&lt;&amp;&gt; /&gt;&#10;\t\r&amp;#9;\ufffd"
+    said = "a&#x27;b&quot;&lt;&amp;&gt; /&gt;\\n\\t\\r&amp;#9;\\x00"  # messages are one printable line
     failed = run_of(source="s", output=odd, status="failed", message=odd, warnings=[odd], seconds={"total": 0.5})
     done = run_from_dict({"source": "s", "output": "o", "status": "done", "warnings": [""]})
     assert render_junit(BatchReport((failed, done), seconds=1.0)) == (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<testsuites name="isocore" tests="2" failures="0" errors="1" time="1.000">\n'
         '  <testsuite name="isocore convert" tests="2" failures="0" errors="1" skipped="0" time="1.000">\n'
-        f'    <testcase name="{held}" classname="s" time="0.500"><error type="failed" message="{held}"/>'
-        "<system-err>a'b\"&lt;&amp;&gt; /&gt;\n\t\r&amp;#9;\ufffd</system-err></testcase>\n"
+        f'    <testcase name="{held}" classname="s" time="0.500"><error type="failed" message="{said}"/>'
+        "<system-err>a'b\"&lt;&amp;&gt; /&gt;\\n\\t\\r&amp;#9;\\x00</system-err></testcase>\n"
         '    <testcase name="o" classname="s" time="0.000"><system-err></system-err></testcase>\n'
         "  </testsuite>\n"
         "</testsuites>\n"

@@ -43,7 +43,9 @@ def _changed(job: Job) -> Iterator[RunReport]:
         if earlier is None:
             left.append(target)
         else:
-            skipped[target] = requirements_checked(replace(earlier, status="skipped", message="up to date"), job)
+            asked = replace(earlier.asked, source=str(job.source), output=str(target.output))  # as they are named now
+            earlier = replace(earlier, asked=asked, status="skipped", message="up to date")
+            skipped[target] = requirements_checked(earlier, job)
     made = convert(replace(job, targets=tuple(left))) if left else iter(())
     for target in job.targets:
         if target in skipped:

@@ -34,11 +34,18 @@ def input_hash(source: Path) -> str:
     whole = sha256()
     try:
         for path in files_of(source):
-            with path.open("rb") as stream:
-                whole.update(file_digest(stream, "sha256").digest())
+            whole.update(bytes.fromhex(_file_hash(path)))
     except OSError:
         return ""
     return whole.hexdigest()
+
+
+def _file_hash(path: Path) -> str:
+    """Of its content. Raises OSError also for a pipe or a device, which would be waited for or never end."""
+    if not path.is_file():
+        raise FileNotFoundError(path)
+    with path.open("rb") as stream:
+        return file_digest(stream, "sha256").hexdigest()
 
 
 def options_hash(job: Job, target: Target) -> str:
@@ -72,9 +79,8 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
             return "options changed", None
         if not source_hash or stamp["input"] != source_hash:
             return "input changed", None
-        with target.output.open("rb") as stream:
-            if file_digest(stream, "sha256").hexdigest() != stamp["run"]["sha256"]:
-                return "output changed", None
+        if _file_hash(target.output) != stamp["run"]["sha256"]:
+            return "output changed", None
         return "", run_from_dict(stamp["run"])
     except (OSError, ValueError, KeyError, TypeError):
         return "no record of how the output was made", None

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from isocore.errors import InputError, IsocoreError, reading
+from isocore.errors import InputError, IsocoreError, about, reading
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
@@ -48,7 +49,8 @@ def files_of(path: Path) -> tuple[Path, ...]:
     """
     suffix = suffix_of(path)
     try:
-        return (path,) if suffix is None else (path, *BY_SUFFIX[suffix].files(path))
+        odd = path.exists() and not path.is_file()  # a pipe would be waited for
+        return (path,) if odd or suffix is None else (path, *BY_SUFFIX[suffix].files(path))
     except (IsocoreError, OSError, ValueError, OverflowError):
         return (path,)
 
@@ -64,9 +66,10 @@ def _format(path: os.PathLike[str] | str) -> Format:
     suffix = suffix_of(path)
     if suffix is None:
         raise InputError(f"has no suffix known here; known are {', '.join(SEARCHED)}")
-    if not Path(path).exists():
-        raise InputError("no such file; check the path")
-    if not Path(path).stat().st_size:
+    found = Path(path).stat()
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError("is a pipe or a device, not a file; write what it holds to a file first")
+    if not found.st_size:
         raise InputError("is empty; copy it again")
     return BY_SUFFIX[suffix]
 
@@ -79,9 +82,9 @@ def _named(path: os.PathLike[str] | str) -> Iterator[None]:
         try:
             yield
         except IsocoreError as error:
-            if str(error).startswith(f"{name}:"):
+            if about(name, error) == str(error):
                 raise
-            raise type(error)(f"{name}: {error}") from error
+            raise type(error)(about(name, error)) from error
 
 
 __all__ = [

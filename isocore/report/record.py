@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from isocore import _kernels
+from isocore.errors import shortened
 from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
 from isocore.measurements import Measurements
@@ -27,6 +28,7 @@ class RunReport:
     isovalue: the number; chosen: how it came about. backend_chosen: the same of the backend.
     offset: the point that vertices are written about, where one was asked for.
     peak_rss_bytes: of the job, before the reference ran; None where the system does not tell.
+    message, warnings and missed are kept printable, each on one line.
     """
 
     asked: Asked
@@ -47,6 +49,11 @@ class RunReport:
     findings: Findings = dataclasses.field(default_factory=Findings)
     seconds: Seconds | None = None
     peak_rss_bytes: int | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "message", shortened(self.message))
+        for name in ("warnings", "missed"):
+            object.__setattr__(self, name, tuple(map(shortened, getattr(self, name))))
 
     @property
     def source(self) -> str:
