@@ -105,7 +105,7 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
             records.finish()
             progress.stop()
             if not options.verbose:
-                _say_warnings(warned, options)
+                _say_warnings(warned, [path for path in options.reports if path not in records.unsaved])
     batch = records.batch()
     unwritten = [*records.unsaved.values(), *_write_depfile(jobs, options.depfile)]
     if os.environ.get("GITHUB_ACTIONS") == "true":
@@ -137,11 +137,11 @@ def _in_full(run: RunReport) -> list[str]:
     return [printable(done), *(f"isocore: warning: {printable(f'{run.source}: {text}')}" for text in warnings)]
 
 
-def _say_warnings(warned: Warned, options: ConvertOptions) -> None:
+def _say_warnings(warned: Warned, saved: list[Path]) -> None:
     for line in warned.lines():
         say(line)
     if warned.several:
-        listed = str(options.reports[0]) if options.reports else "--report FILE or -v"
+        listed = str(saved[0]) if saved else "--report FILE or -v"
         say(f"isocore: {listed} lists which warning is about which surface")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.batches import stamps
-from isocore.errors import one_line
+from isocore.errors import OutputError, one_line
 from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
@@ -53,5 +53,14 @@ def _changed(job: Job) -> Iterator[RunReport]:
             continue
         run = next(made)
         if run.status in ("done", "empty") and target.output != STDOUT:
-            stamps.keep_stamp(job, target, source_hash, run)
+            run = _stamped(job, target, source_hash, run)
         yield run
+
+
+def _stamped(job: Job, target: Target, source_hash: str, run: RunReport) -> RunReport:
+    """The run, kept beside its output; where that is refused the output is as good, but will be made again."""
+    try:
+        stamps.keep_stamp(job, target, source_hash, run)
+    except OutputError as error:
+        return replace(run, warnings=(*run.warnings, f"{error}; without it --if-changed makes the output again"))
+    return run

@@ -5,11 +5,10 @@ A renderer is a function in its own file and a row here; the suffix of the repor
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
-from isocore.errors import InputError, OptionError, one_line, reading
+from isocore.errors import InputError, OptionError, reading
 from isocore.report.keys import SCHEMA, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
 from isocore.report.record import BatchReport, RunReport
 from isocore.report.render_benchmark import render_benchmark
@@ -19,6 +18,7 @@ from isocore.report.render_html import MESH_BYTES, render_html
 from isocore.report.render_json import render_json, render_jsonl
 from isocore.report.render_junit import render_junit
 from isocore.report.render_markdown import render_markdown
+from isocore.report.schema import parsed
 from isocore.whole_file import whole_file
 
 Renderer = Callable[[BatchReport], str]
@@ -55,16 +55,14 @@ def save_report(batch: BatchReport, path: Path, *, mesh_bytes: int = MESH_BYTES)
 def load_report(path: Path) -> BatchReport:
     """A JSON report, as save_report wrote it. Raises InputError for anything else."""
     with reading(path):
+        data = path.read_bytes()
         try:
-            record = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise InputError(f"{path}: is not JSON ({one_line(error)}); name a .json report") from error
-        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
-            raise InputError(f"{path}: is not a report of schema {SCHEMA}; name a .json report of this version")
-        try:
+            record = parsed(data)
+            if not isinstance(record, dict) or record.get("schema") is True or record.get("schema") != SCHEMA:
+                raise InputError(f"is not a report of schema {SCHEMA}")
             return batch_from_dict(record)
-        except (TypeError, KeyError, AttributeError) as error:
-            raise InputError(f"{path}: lacks what a report has ({one_line(error)}); name a .json report") from error
+        except InputError as error:
+            raise InputError(f"{path}: {error}; name a .json report as isocore wrote it") from error
 
 
 def merged(batches: list[BatchReport]) -> BatchReport:

@@ -6,20 +6,15 @@ Keys are a contract (docs/report.md): a key is added with care, and none is rena
 from __future__ import annotations
 
 import math
-from dataclasses import MISSING, fields, is_dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
 
-from isocore.extraction import Ambiguous, Climbing, Deviation, Findings, Search, keys_of
+from isocore.errors import InputError
+from isocore.extraction import Findings, keys_of
 from isocore.field_facts import FieldFacts
-from isocore.histogram import Bars
-from isocore.measurements import Measurements
 from isocore.report.record import BatchReport, RunReport
-from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds, Written
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-Section = TypeVar("Section", bound="DataclassInstance")
+from isocore.report.schema import built
+from isocore.report.sections import Asked, Written
 
 SCHEMA = 1
 #: The keys of a record, in their order.
@@ -29,6 +24,13 @@ KEYS = (
     "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen", "options", "surface", "reference", "ratio",
     "error", "search", "ambiguous", "climbing", "facts", "seconds", "peak_rss_bytes",
 )
+
+
+@dataclass(frozen=True, slots=True)
+class _Totals:
+    """Of the sums over the records, the one that the records do not give."""
+
+    seconds: float = 0.0
 
 
 def run_as_dict(run: RunReport) -> dict[str, Any]:
@@ -68,71 +70,32 @@ def batch_as_dict(batch: BatchReport, *, outputs: bool = True) -> dict[str, Any]
     }
 
 
-def run_from_dict(record: dict[str, Any]) -> RunReport:
-    """The inverse of run_as_dict; keys of a later version are left out, those an earlier one lacks are None."""
-    return RunReport(
-        asked=_section(Asked, record | {"options": _optional(Given, record.get("options"))}),
-        status=record["status"],
-        message=record.get("message", ""),
-        warnings=tuple(record.get("warnings", ())),
-        missed=tuple(record.get("missed", ())),
-        written=_section(Written, record) if record.get("sha256") is not None else None,
-        field=_field(record) if record.get("kind") is not None else None,
-        isovalue=record.get("isovalue"),
-        chosen=record.get("chosen", ""),
-        offset=_frozen(record.get("offset")),
-        backend=record.get("backend"),
-        backend_chosen=record.get("backend_chosen", ""),
-        surface=_optional(Measurements, record.get("surface")),
-        reference=_optional(Reference, record.get("reference")),
-        ratio=_optional(Ratio, record.get("ratio")),
-        findings=Findings(
-            error=_optional(Deviation, record.get("error")),
-            search=_optional(Search, record.get("search")),
-            ambiguous=_optional(Ambiguous, record.get("ambiguous")),
-            climbing=_optional(Climbing, record.get("climbing")),
-            facts=record.get("facts") or {},
-        ),
-        seconds=_optional(Seconds, record.get("seconds")),
-        peak_rss_bytes=record.get("peak_rss_bytes"),
-    )
+def run_from_dict(record: dict[str, Any], place: str = "", *, complete: bool = False) -> RunReport:
+    """The inverse of run_as_dict; keys of a later version are left out, those an earlier one lacks are None.
+
+    place: of the record in its file, for messages. complete: no key of this version may be missing.
+    Raises InputError, without a path, for a record without its identity or with a value of another type.
+    """
+    if not isinstance(record, dict):
+        return built(RunReport, record, place)
+    flat = {
+        "asked": built(Asked, record, place, needed=("source", "output"), complete=complete),
+        "written": None if record.get("sha256") is None else built(Written, record, place, complete=complete),
+        "field": None if record.get("kind") is None else built(FieldFacts, record, place, complete=complete),
+        "findings": built(Findings, record, place, complete=complete),
+    }
+    return built(RunReport, record, place, given=flat, needed=("status",), complete=complete)
 
 
 def batch_from_dict(record: dict[str, Any]) -> BatchReport:
-    """The inverse of batch_as_dict."""
-    return BatchReport(
-        outputs=tuple(run_from_dict(run) for run in record["outputs"]),
-        arguments=tuple(record.get("arguments", ())),
-        seconds=float((record.get("totals") or {}).get("seconds") or 0.0),
-        tool=record.get("tool") or {},
-        host=record.get("host") or {},
-    )
-
-
-def _field(record: dict[str, Any]) -> FieldFacts:
-    return _section(FieldFacts, record | {"histogram": _optional(Bars, record.get("histogram"))})
-
-
-def _optional(kind: type[Section], record: dict[str, Any] | None) -> Section | None:
-    """The section, or None for null and for the empty object that stands for one."""
-    return _section(kind, record) if record else None
-
-
-def _section(kind: type[Section], record: dict[str, Any]) -> Section:
-    """A section out of the keys of its fields. Raises KeyError where `source` or `output`, the identity, is missing."""
-    values: dict[str, Any] = {}
-    for item in fields(kind):
-        if item.name in record:
-            values[item.name] = _frozen(record[item.name])
-        elif kind is Asked and item.default is MISSING:
-            raise KeyError(item.name)
-        elif item.default is MISSING:
-            values[item.name] = None
-    return kind(**values)
-
-
-def _frozen(value: Any) -> Any:
-    return tuple(_frozen(item) for item in value) if isinstance(value, list) else value
+    """The inverse of batch_as_dict. Raises InputError, without a path, where a value is missing or of another type."""
+    outputs, totals = record.get("outputs"), record.get("totals")
+    if not isinstance(outputs, list):
+        raise InputError("lacks outputs, a list")
+    runs = tuple(run_from_dict(run, f"outputs[{n}]") for n, run in enumerate(outputs))
+    seconds = _Totals().seconds if totals is None else built(_Totals, totals, "totals").seconds
+    made = {"tool": record.get("tool") or {}, "host": record.get("host") or {}}
+    return built(BatchReport, record | made, "", given={"outputs": runs, "seconds": seconds})
 
 
 def plain(value: Any) -> Any:

@@ -68,7 +68,7 @@ class RunReport:
     @property
     def triangles(self) -> int:
         """Of the surface; 0 where there is none."""
-        return 0 if self.surface is None else self.surface.triangles
+        return 0 if self.surface is None else self.surface.triangles or 0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,7 +20,8 @@ def read_mesh(path: Path) -> Mesh | None:
     """
     reader = READ_BACK.get(path.suffix.lower())
     try:
-        return None if reader is None or not path.is_file() else _checked(*reader(path.read_bytes()))
+        with np.errstate(all="ignore"):  # what comes of odd numbers is no surface
+            return None if reader is None or not path.is_file() else _checked(*reader(path.read_bytes()))
     except (OSError, ValueError, KeyError, IndexError, TypeError, OverflowError, MemoryError):
         return None
 
