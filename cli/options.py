@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Callable, Iterable
@@ -54,6 +55,22 @@ class Offset(click.ParamType):
             return choices.parse_about(str(value))
         except OptionError:
             self.fail(f"{value}: needs auto or X,Y,Z, or a number of bytes for raw files", parameter, context)
+
+
+class Positive(click.ParamType):
+    """A finite number above 0."""
+
+    name = "EPS"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """The number."""
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not 0 < number < math.inf:
+            self.fail(f"{value}: needs a number above 0", parameter, context)
+        return number
 
 
 class MaxErrorType(click.ParamType):
@@ -135,10 +152,12 @@ class Reading:
     origin: tuple[float, ...] | None
     byte_order: str | None
     offset: int | None
+    merge_points: float | None
+    keep_duplicates: bool
 
     def read_options(self) -> ReadOptions:
         """The same for a reader; a volume of "all" is spread by whoever plans the jobs."""
-        from isocore.readers.options import ReadOptions  # late: readers bring numpy, which no help needs
+        from isocore.readers.options import MeshOptions, ReadOptions  # late: readers bring numpy, which no help needs
 
         return ReadOptions(
             volume=None if self.volume == "all" else self.volume,
@@ -150,6 +169,7 @@ class Reading:
             origin=self.origin,
             byte_order=self.byte_order,
             offset=self.offset,
+            mesh=MeshOptions(merge_points=self.merge_points, keep_duplicates=self.keep_duplicates),
         )
 
 
@@ -180,6 +200,8 @@ def _with_reading(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_reading(*arguments: Any, **values: Any) -> None:
         reading = Reading(**{item.name: values.pop(item.name) for item in fields(Reading)})
+        if reading.merge_points is not None and reading.keep_duplicates:
+            raise click.UsageError("--merge-points joins points and --keep-duplicates leaves them; give one of them")
         command(*arguments, reading=reading, **values)
 
     return with_reading
@@ -189,6 +211,13 @@ _READING_OPTIONS = (
     click.option("--volume", type=VolumeChoice(), help="4-D input: which volume, from 0, or all."),
     click.option("--field", metavar="NAME", help="VTU: which point field."),
     click.option("--component", metavar="I|magnitude", help="VTU: which component of a vector field."),
+    click.option(
+        "--merge-points",
+        type=Positive(),
+        metavar="EPS",
+        help="Meshes: join points within this distance too, not only those at equal coordinates.",
+    ),
+    click.option("--keep-duplicates", is_flag=True, help="Meshes: join no points."),
     click.option("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis."),
     click.option("--dtype", metavar="T", help="Raw: uint8, int16, float32 and so on."),
     click.option("--spacing", type=Numbers(float), metavar="A,B,C", help="Raw: distance of samples per axis."),

@@ -213,3 +213,10 @@ class GridIndex:
 
 # extrema_graph: the cells that the rival of 1995 registers
 def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes) -> _Int32: ...
+
+# joining
+class JoinedPoints(NamedTuple):
+    with_: _Int32  # (n,) the lowest point that each is joined with, itself where that is none
+    joined: int  # points that are joined with another
+
+def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...

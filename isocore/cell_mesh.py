@@ -11,6 +11,21 @@ import numpy.typing as npt
 from isocore.errors import FieldError
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Connectivity:
+    """How the cells of a mesh came to hang together.
+
+    ghost_cells: left out, because the file marks them. joined_points: points that coincide with another and were
+    joined with it. averaged_points: those that were left where the values of the joined points differ by more than
+    rounding, so that their mean was taken; largest_difference: by how much.
+    """
+
+    ghost_cells: int = 0
+    joined_points: int = 0
+    averaged_points: int = 0
+    largest_difference: float = 0.0
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class CellMesh:
     """Tetrahedra and hexahedra with one value per point.
@@ -23,6 +38,7 @@ class CellMesh:
     field_name: the point field the values came from.
     cell_counts: cells of the file by type, before wedges and pyramids were split.
     warnings: what the reader wants its user to know.
+    connectivity: what was left out and joined.
     """
 
     points: npt.NDArray[np.float64]
@@ -33,6 +49,7 @@ class CellMesh:
     field_name: str = ""
     cell_counts: dict[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    connectivity: Connectivity = Connectivity()
 
     def __post_init__(self) -> None:
         n = len(self.points)

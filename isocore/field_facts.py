@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from isocore.cell_mesh import Connectivity
 from isocore.extraction import Field
 from isocore.histogram import Bars, Histogram
 from isocore.volume import Volume
@@ -18,6 +19,7 @@ class FieldFacts:
     spacing: length of one step along i, j, k, in `unit`; None for a mesh.
     space: what world means, as in Volume.
     field: the mesh's field that was read; None for a volume.
+    connectivity: of a mesh, how its cells came to hang together.
     range: smallest and largest finite value, scaled; None without one. nonfinite: samples that have none.
     """
 
@@ -31,6 +33,7 @@ class FieldFacts:
     range: tuple[float, float] | None
     nonfinite: int
     histogram: Bars
+    connectivity: Connectivity | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -66,4 +69,5 @@ class FieldFacts:
             range=spread.range,
             nonfinite=spread.nonfinite,
             histogram=spread.coarse(),
+            connectivity=source.connectivity,
         )

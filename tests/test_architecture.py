@@ -48,9 +48,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "histogram": {"cell_mesh", "volume"} | KERNELS,
     "isovalue": {"choices", "errors", "histogram"} | KERNELS,
     "extrema": {"cell_mesh"},
-    "field_facts": {"extraction", "histogram", "volume"},
+    "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,
-    "report": {"errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
+    "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
     | {"writers/read_back"}
     | KERNELS,
     "report/sections": set(),

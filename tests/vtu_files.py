@@ -21,12 +21,13 @@ PART = 256  # bytes inflated per compressed part: small, so that test meshes hav
 
 @dataclass(frozen=True)
 class Mesh:
-    """Points (n, 3), cells as (type, corners) rows, and fields (tuples, ...) by name."""
+    """Points (n, 3), cells as (type, corners) rows, fields (tuples, ...) by name; cell_arrays: more of <Cells>."""
 
     points: Any
     cells: list[tuple[int, list[int]]]
     point_fields: dict[str, Any] = field(default_factory=dict)
     cell_fields: dict[str, Any] = field(default_factory=dict)
+    cell_arrays: dict[str, Any] = field(default_factory=dict)
 
     def with_field(self, name: str, values: Any) -> Mesh:
         return replace(self, point_fields={**self.point_fields, name: np.asarray(values)})
@@ -120,6 +121,7 @@ def _piece(mesh: Mesh, encoding: Encoding, blocks: list[bytes], types: dict[str,
     of_points = "".join(array(name, values) for name, values in mesh.point_fields.items())
     of_cells = "".join(array(name, values) for name, values in mesh.cell_fields.items())
     cells = array("connectivity", corners) + array("offsets", offsets) + array("types", numbers)
+    cells += "".join(array(name, values) for name, values in mesh.cell_arrays.items())
     return (
         f'<Piece NumberOfPoints="{len(mesh.points)}" NumberOfCells="{len(mesh.cells)}">\n'
         f"<PointData>\n{of_points}</PointData>\n<CellData>\n{of_cells}</CellData>\n"

@@ -11,6 +11,7 @@ through quad faces with a cell that is split are split with it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +24,7 @@ QUADS = {
     "hex": ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
     "wedge": ((0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
     "pyramid": ((0, 1, 2, 3),),
+    "quad": ((0, 1, 2, 3),),
 }
 TRIANGLES: dict[str, tuple[tuple[int, int, int], ...]] = {
     "hex": (),
@@ -46,15 +48,22 @@ class SplitCells:
     beside: int
 
 
-def split_cells(tets: Cells, hexes: Cells, wedges: Cells, pyramids: Cells) -> SplitCells:
-    """Tetrahedra and whole hexahedra that fill the same space and meet face to face as before."""
+def split_cells(
+    tets: Cells, hexes: Cells, wedges: Cells, pyramids: Cells, quads: Cells | None = None
+) -> SplitCells:
+    """Tetrahedra and whole hexahedra that fill the same space and meet face to face as before.
+
+    quads: (q, 4) faces that others cut: the hexahedra at them have to be split.
+    """
+    cut = np.empty((0, 4), np.int32) if quads is None else quads
     flat = [repeats_a_corner(cells) for cells in (tets, hexes, wedges, pyramids)]
     collapsed = sum(int(np.count_nonzero(mask)) for mask in flat)
     if flat[0].any():
         tets = tets[~flat[0]]
-    if not len(wedges) and not len(pyramids) and not flat[1].any():
+    if not len(wedges) and not len(pyramids) and not len(cut) and not flat[1].any():
         return SplitCells(tets, hexes, collapsed, 0)
-    split = _hang_together(hexes, flat[1], [_quad_keys(wedges, "wedge"), _quad_keys(pyramids, "pyramid")])
+    others = [_quad_keys(wedges, "wedge"), _quad_keys(pyramids, "pyramid"), _quad_keys(cut, "quad")]
+    split = _hang_together(hexes, flat[1], others)
     parts = [tets, cones(hexes[split], "hex"), cones(wedges, "wedge"), cones(pyramids, "pyramid")]
     return SplitCells(
         np.concatenate(parts), hexes[~split], collapsed, int(np.count_nonzero(split & ~flat[1]))
@@ -120,18 +129,18 @@ def _quad_keys(cells: Cells, shape: str) -> Keys:
 
     Two quads that met by chance (once in 2^64 pairs) would only have more hexahedra split than need be.
     """
-    mixed = _mixed(cells)
-    sums = [mixed[:, a] + mixed[:, b] + mixed[:, c] + mixed[:, d] for a, b, c, d in QUADS[shape]]
+    keys = mixed(cells)
+    sums = [keys[:, a] + keys[:, b] + keys[:, c] + keys[:, d] for a, b, c, d in QUADS[shape]]
     return np.stack(sums, axis=1).ravel()
 
 
-def _mixed(numbers: Cells) -> Keys:
+def mixed(numbers: npt.NDArray[Any]) -> Keys:
     """Scrambled point numbers: sums of four of them are as good as random."""
-    mixed = numbers.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
+    keys = numbers.astype(np.uint64) + np.uint64(0x9E3779B97F4A7C15)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
-        mixed ^= mixed >> np.uint64(shift)
-        mixed *= np.uint64(factor)
-    return mixed ^ (mixed >> np.uint64(31))
+        keys ^= keys >> np.uint64(shift)
+        keys *= np.uint64(factor)
+    return keys ^ (keys >> np.uint64(31))
 
 
 def _components(nodes: int, a: npt.NDArray[np.intp], b: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:

@@ -6,17 +6,32 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MeshOptions:
+    """How the cells of a mesh hang together.
+
+    merge_points: join points within this distance, in the mesh's unit; None joins those at equal coordinates.
+    keep_duplicates: join none. corners: read curved cells by their corners alone.
+    """
+
+    merge_points: float | None = None
+    keep_duplicates: bool = False
+    corners: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ReadOptions:
     """Each reader takes what concerns its format and leaves the rest.
 
     volume: which volume of a 4-D file, counted from 0; None where the file holds one.
     field, component: VTU, which point field and which part of it ("0", "1", ... or "magnitude").
+    mesh: how cells hang together.
     shape, dtype, spacing, origin, byte_order, offset: raw files; they go before those of a sidecar.
     """
 
     volume: int | None = None
     field: str | None = None
     component: str | None = None
+    mesh: MeshOptions = MeshOptions()
     shape: tuple[int, ...] | None = None
     dtype: str | None = None
     spacing: tuple[float, ...] | None = None

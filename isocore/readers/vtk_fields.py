@@ -12,7 +12,10 @@ import numpy.typing as npt
 from isocore.errors import FieldError, OptionError
 
 #: What VTK's own filters leave behind to find their way; chosen by name only.
-BOOKKEEPING = ("vtkGhostType", "vtkOriginalPointIds", "vtkOriginalCellIds", "vtkValidPointMask")
+BOOKKEEPING = (
+    "vtkGhostType", "vtkGhostLevels", "avtGhostZones", "vtkOriginalPointIds", "vtkOriginalCellIds",
+    "vtkValidPointMask", "HigherOrderDegrees", "RationalWeights",
+)  # fmt: skip
 _EXACT_IN_FLOAT32 = 1 << 24
 
 
@@ -106,18 +109,17 @@ def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> 
 
 def averaged(
     cell_values: npt.NDArray[Any],
-    blocks: Sequence[tuple[npt.NDArray[np.int32], npt.NDArray[Any]]],
+    columns: Sequence[tuple[npt.NDArray[np.int32], npt.NDArray[Any]]],
     points: int,
 ) -> npt.NDArray[Any]:
     """Per point the mean of its cells; the mean of all cells where a point has none.
 
-    cell_values: (c,) float. blocks: pairs of (m, k) corners and (m,) values.
+    cell_values: (c,) float. columns: points of some cells, one each, and the values of these cells.
     """
     total, count = np.zeros(points), np.zeros(points, np.int64)
-    for cells, weights in blocks:
-        for column in cells.T:
-            total += np.bincount(column, weights=weights, minlength=points)
-            count += np.bincount(column, minlength=points)
+    for column, values in columns:
+        total += np.bincount(column, weights=values, minlength=points)
+        count += np.bincount(column, minlength=points)
     lonely = count == 0
     total[lonely] = cell_values.mean() if len(cell_values) else 0.0
     count[lonely] = 1

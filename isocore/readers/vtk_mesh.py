@@ -1,149 +1,132 @@
 """From the arrays of VTK's unstructured grid to a CellMesh, whatever file they come from.
 
-The arrays are those of VTK's data model: points, cells as types, offsets and connectivity, and one field.
+The arrays are those of VTK's data model: points, cells as types, offsets and connectivity, and one field. Ghosts are
+left out first, then points that coincide are joined, then cells are split.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
-from functools import reduce
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from isocore.cell_mesh import CellMesh
-from isocore.errors import FieldError, InputError
-from isocore.readers.cell_splitting import split_cells
-from isocore.readers.vtk_cells import CORNERS, FLAT, SOLID, Corners, Shape, corners, count_cells
-from isocore.readers.vtk_fields import FieldInfo, averaged, scalar
+from isocore.cell_mesh import CellMesh, Connectivity
+from isocore.errors import FieldError
+from isocore.readers.cell_splitting import SplitCells, split_cells
+from isocore.readers.options import MeshOptions
+from isocore.readers.vtk_cells import CORNERS, Shape
+from isocore.readers.vtk_centres import SplitFaces, split_at_centres
+from isocore.readers.vtk_fields import FieldInfo, averaged
+from isocore.readers.vtk_joining import joined_values, joining
+from isocore.readers.vtk_pieces import Part, PieceData, checked, renumbered, together, used_points
+from isocore.readers.vtk_warnings import cell_warnings, corner_warnings, joining_warnings, named, splitting_warnings
 
 
-@dataclass(frozen=True, slots=True)
-class PieceData:
-    """The arrays of one piece as they are in the file.
-
-    points: (n, 3), any number type. types, offsets: (c,) integers of each cell, offsets where it ends.
-    connectivity: point numbers of all cells, one cell after the other.
-    values: flat, the components of each point, or of each cell, together.
-    """
-
-    points: npt.NDArray[Any]
-    types: npt.NDArray[Any]
-    offsets: npt.NDArray[Any]
-    connectivity: npt.NDArray[Any]
-    values: npt.NDArray[Any]
-
-
-def assembled(path: str, pieces: Iterable[PieceData], field: FieldInfo, component: int | None) -> CellMesh:
+def assembled(
+    path: str,
+    pieces: Iterable[PieceData],
+    field: FieldInfo,
+    component: int | None,
+    options: MeshOptions = MeshOptions(),  # noqa: B008
+) -> CellMesh:
     """One mesh of all pieces, with one value per point; component None is the magnitude of `field`.
 
     Raises InputError where the arrays contradict each other, FieldError where they cannot be contoured; each
     message starts with `path`.
     """
-    return _joined(path, [_checked(path, piece, field, component) for piece in pieces], field)
-
-
-@dataclass(frozen=True, slots=True)
-class _Part:
-    """One piece, checked. points: (n, 3) float64. values: (n,) of the points. counts: cells by VTK type."""
-
-    points: npt.NDArray[np.float64]
-    values: npt.NDArray[Any]
-    cells: list[Corners]
-    counts: dict[int, int]
-
-
-def _checked(path: str, piece: PieceData, field: FieldInfo, component: int | None) -> _Part:
-    counts = count_cells(path, piece.types)
-    points = np.array(piece.points, dtype=np.float64)
-    if not np.isfinite(points).all():
-        raise InputError(f"{path}: some of its points have coordinates that are not finite; write it again")
-    cells = corners(path, (piece.types, piece.offsets, piece.connectivity), counts, len(points))
-    values = scalar(piece.values, field.components, component)
-    if field.of == "cells":
-        values = averaged(values, [(block.cells, values[block.numbers]) for block in cells], len(points))
-    return _Part(points, values, cells, counts)
-
-
-def _joined(path: str, parts: list[_Part], field: FieldInfo) -> CellMesh:
-    """All parts as one mesh, with what is neither tetrahedron nor hexahedron split."""
-    counts = reduce(Counter.__add__, (Counter(part.counts) for part in parts))
-    warnings = _cell_warnings(path, counts)
-    split = split_cells(*(_cells(path, parts, shape) for shape in ("tet", "hex", "wedge", "pyramid")))
+    parts = [checked(path, piece, field, component) for piece in pieces]
+    counts = sum((Counter(part.counts) for part in parts), Counter[int]())
+    ghosts = sum(part.ghosts for part in parts)
+    warnings = cell_warnings(path, counts, ghosts)
+    whole, found = _hung_together(together(path, parts), field, options, ghosts)
+    points, values, split, turned = _split(path, whole)
+    warnings += corner_warnings(whole.blocks)
+    warnings += splitting_warnings(counts, split, turned)
     if not len(split.tets) and not len(split.hexes):
-        raise FieldError(
-            f"{path}: each of its {split.collapsed:,} cells is collapsed to nothing; write it again"
-        )
-    values = _one([part.values for part in parts])
-    if split.collapsed:
-        warnings.append(
-            f"{split.collapsed:,} cells name a corner twice; they were split by the corners they have left,"
-            " or dropped where those enclose nothing"
-        )
-    if split.beside:
-        warnings.append(
-            f"{split.beside:,} hexahedra hang together through faces with wedges, pyramids or collapsed"
-            " cells; they were split into tetrahedra too, so that the surface stays closed"
-        )
-    if len(parts) > 1:
-        warnings.append(f"{len(parts)} pieces were joined, but not their points: the surface has seams there")
+        raise FieldError(f"{path}: each of its {split.collapsed:,} cells is collapsed to nothing; write it again")
+    warnings += joining_warnings(found, field, options.merge_points)
+    if len(parts) > 1 and options.keep_duplicates:
+        warnings.append(f"the points of {len(parts)} pieces were not joined: the surface has seams there")
     if field.of == "cells":
         warnings.append(f"{field.name} is a cell field; each point got the mean of its cells, which blurs it")
     infinite = values.size - int(np.count_nonzero(np.isfinite(values)))
     if infinite:
         warnings.append(f"{infinite:,} of {values.size:,} values of {field.name} are not finite and outside")
     return CellMesh(
-        _one([part.points for part in parts]),
+        points,
         split.tets,
         split.hexes,
         values,
         field_name=field.name,
-        cell_counts=_by_name(counts),
+        cell_counts=named(counts),
         warnings=tuple(warnings),
+        connectivity=found,
     )
 
 
-def _cells(path: str, parts: list[_Part], shape: Shape) -> npt.NDArray[np.int32]:
-    """(m, k) all cells of one shape, numbered over all parts."""
-    first = 0
-    found = []
-    for part in parts:
-        for block in part.cells:
-            if block.kind.shape == shape:
-                found.append(block.cells + np.int32(first) if first else block.cells)
-        first += len(part.points)
-        if first > np.iinfo(np.int32).max:
-            raise FieldError(f"{path}: holds more than 2,147,483,647 points; cut it into several files")
+def _hung_together(
+    part: Part, field: FieldInfo, options: MeshOptions, ghosts: int
+) -> tuple[Part, Connectivity]:
+    """Points that coincide are joined, and each has one value."""
+    of_cells = field.of == "cells"
+    by = None if options.keep_duplicates else joining(part.points, options.merge_points or 0.0)
+    joined, differing, largest = 0, 0, 0.0
+    if by is not None:
+        joined = by.joined
+        values = part.values
+        if not of_cells:
+            found = joined_values(by, part.values, used_points(part))
+            values, differing, largest = found.values, found.differing, found.largest
+        part = replace(renumbered(part, by.number), points=part.points[by.first], values=values)
+    if of_cells:
+        part = replace(part, values=_at_points(part))
+    return part, Connectivity(
+        ghost_cells=ghosts, joined_points=joined, averaged_points=differing, largest_difference=largest
+    )
+
+
+def _at_points(part: Part) -> npt.NDArray[Any]:
+    """(n,) values of the cells, averaged."""
+    columns = [
+        (column, part.values[block.numbers]) for block in part.blocks for column in block.cells.T
+    ]
+    columns += [(one.corners, np.repeat(part.values[one.numbers], one.counts)) for one in part.ragged]
+    return averaged(part.values, columns, len(part.points))
+
+
+def _split(
+    path: str, part: Part
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[Any], SplitCells, tuple[int, int]]:
+    """Points, values, and cells as tetrahedra and hexahedra; how many list faces inside out, and the first of them."""
+    centred: list[SplitFaces] = []
+    count = len(part.points)
+    for faces in part.faces:
+        centred.append(split_at_centres(path, faces, part.points, part.values, count))
+        count += len(faces.counts)
+    if count > np.iinfo(np.int32).max:
+        raise FieldError(f"{path}: holds more than 2,147,483,647 points; cut it into several files")
+    tets, hexes, wedges, pyramids = (_cells(part, shape) for shape in ("tet", "hex", "wedge", "pyramid"))
+    tets = _one([tets, *(split.tets for split in centred)])
+    quads = _one([np.empty((0, 4), np.int32), *(split.quads for split in centred)])
+    turned = [split for split in centred if split.turned]
+    return (
+        _one([part.points, *(split.centres for split in centred)]),
+        _one([part.values, *(split.values for split in centred)]),
+        split_cells(tets, hexes, wedges, pyramids, quads),
+        (sum(split.turned for split in turned), turned[0].first if turned else -1),
+    )
+
+
+def _cells(part: Part, shape: Shape) -> npt.NDArray[np.int32]:
+    """(m, k) all cells of one shape, by their corners."""
+    found = [np.ascontiguousarray(block.corners) for block in part.blocks if block.kind.shape == shape]
     return _one(found) if found else np.empty((0, CORNERS[shape]), np.int32)
 
 
 def _one(arrays: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     """The arrays behind each other; a single one as it is."""
     return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)
-
-
-def _by_name(counts: Counter[int]) -> dict[str, int]:
-    named: Counter[str] = Counter()
-    for number, count in counts.items():
-        named[SOLID[number].name if number in SOLID else FLAT[number]] += count
-    return dict(named)
-
-
-def _cell_warnings(path: str, counts: Counter[int]) -> list[str]:
-    """Of cells left out or straightened; FieldError where no cell fills space."""
-    flat = [f"{count:,} {FLAT[number]}" for number, count in counts.items() if number in FLAT]
-    if len(flat) == len(counts):
-        raise FieldError(
-            f"{path}: holds only surface cells ({', '.join(flat)}); contouring needs cells that fill space"
-        )
-    warnings = [f"{cells} enclose nothing and were left out" for cells in flat]
-    for number, count in counts.items():
-        if number in SOLID and SOLID[number].curved:
-            warnings.append(
-                f"{count:,} {SOLID[number].name} were reduced to their corners;"
-                " the values between the corners are not used"
-            )
-    return warnings

@@ -2,7 +2,7 @@
 
 Here XML and its encodings end: the arrays of each piece go to vtk_mesh.py, which knows cells and fields but no
 file format. Only the arrays that are needed are decoded, from the mapped file. XML that the tag scan does not follow
-(UTF-16, CDATA, entities, comments inside the numbers) is left to meshio.
+(UTF-16, CDATA, entities, comments inside the numbers) is written plainly first.
 """
 
 from __future__ import annotations
@@ -13,22 +13,24 @@ from pathlib import Path
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, reading
-from isocore.readers.vtk_fields import FieldChoice, FieldInfo, choose, component_of
+from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
 from isocore.readers.vtu_layout import UnusualLayout, scan
+from isocore.readers.vtu_plain import plain
 from isocore.readers.vtu_source import MappedSource, Source
 
 Pathlike = os.PathLike[str] | str
 
 
-def read_vtu(path: Pathlike, options: FieldChoice) -> CellMesh:
+def read_vtu(path: Pathlike, options: ReadOptions) -> CellMesh:
     """The mesh in the file `path` with the field that `options` choose."""
     name = os.fspath(path)
     with reading(path):
         source = _open(name)
         field = choose(name, source.fields, options)
         component = component_of(name, field, options.component)
-        return assembled(name, source.pieces(field), field, component)
+        return assembled(name, source.pieces(field), field, component, options.mesh)
 
 
 def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
@@ -49,8 +51,7 @@ def _open(path: str) -> Source:
         data = mmap(file.fileno(), 0, access=ACCESS_READ)
     try:
         layout = scan(path, data)
-    except UnusualLayout as unusual:
-        from isocore.readers.vtu_meshio import MeshioSource
-
-        return MeshioSource(path, str(unusual))
+    except UnusualLayout:
+        text = plain(path, data)
+        return MappedSource(path, text, scan(path, text))
     return MappedSource(path, data, layout)

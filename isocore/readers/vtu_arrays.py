@@ -28,7 +28,7 @@ class ArrayReader:
     """Reads the arrays of one mapped VTU file."""
 
     path: str
-    data: mmap
+    data: mmap | bytes
     layout: Layout
 
     def read(self, tag: ArrayTag, values: int | None = None) -> npt.NDArray[Any]:

@@ -20,7 +20,7 @@ _TEXT = re.compile(rb"\S")
 
 
 class UnusualLayout(Exception):
-    """Legal XML that the tag scan does not follow; meshio reads it instead."""
+    """Legal XML that the tag scan does not follow before it is written plainly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +45,11 @@ class Piece:
     points: int
     cells: int
     arrays: dict[str, list[ArrayTag]] = field(default_factory=lambda: {name: [] for name in SECTIONS})
+
+    def named(self, section: str, *names: str) -> list[ArrayTag]:
+        """The first array of each name that is there: of several time steps, the first."""
+        found = {tag.name: tag for tag in reversed(self.arrays[section]) if tag.name in names}
+        return list(found.values())
 
 
 @dataclass(slots=True)
@@ -137,7 +142,7 @@ class _Scan:
         return int(text)
 
 
-def scan(path: str, data: mmap) -> Layout:
+def scan(path: str, data: mmap | bytes) -> Layout:
     """The layout of the VTU file mapped as `data`; InputError where its tags are not what they should be."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<"):
         raise UnusualLayout("UTF-16")
@@ -169,7 +174,7 @@ def scan(path: str, data: mmap) -> Layout:
     return seen.layout
 
 
-def _tags(path: str, data: mmap) -> Iterator[tuple[int, int]]:
+def _tags(path: str, data: mmap | bytes) -> Iterator[tuple[int, int]]:
     """(first, end) of every tag and comment in turn."""
     position = 0
     while (first := data.find(b"<", position)) >= 0:
@@ -188,7 +193,7 @@ def _tags(path: str, data: mmap) -> Iterator[tuple[int, int]]:
         yield first, position
 
 
-def _behind_underscore(path: str, data: mmap, end: int) -> int:
+def _behind_underscore(path: str, data: mmap | bytes, end: int) -> int:
     found = _TEXT.search(data, end)
     if found is None or found.group() != b"_":
         raise InputError(f"{path}: its appended data does not start with an underscore; copy it again")

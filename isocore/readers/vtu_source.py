@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from mmap import mmap
-from typing import Protocol
+from typing import Any, Protocol
+
+import numpy.typing as npt
 
 from isocore.errors import FieldError, InputError
 from isocore.readers.vtk_fields import FieldInfo
-from isocore.readers.vtk_mesh import PieceData
+from isocore.readers.vtk_ghosts import GHOST_TYPE, OF_CELLS
+from isocore.readers.vtk_pieces import PieceData
+from isocore.readers.vtk_polyhedra import FaceLists, FourArrays
 from isocore.readers.vtu_arrays import DTYPES, ArrayReader
 from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
+
+#: Arrays of polyhedra since VTK 9.4.
+_LISTED = ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets")
 
 
 class Source(Protocol):
@@ -24,7 +31,7 @@ class Source(Protocol):
 class MappedSource:
     """A mapped file whose arrays are decoded here."""
 
-    def __init__(self, path: str, data: mmap, layout: Layout) -> None:
+    def __init__(self, path: str, data: mmap | bytes, layout: Layout) -> None:
         self.path = path
         self.arrays = ArrayReader(path, data, layout)
         self.full = [piece for piece in layout.pieces if piece.points and piece.cells]
@@ -55,7 +62,21 @@ class MappedSource:
                 offsets=read(self._tag(piece, "Cells", "offsets"), piece.cells),
                 connectivity=read(self._tag(piece, "Cells", "connectivity")),
                 values=read(values, tuples * field.components),
+                ghosts=tuple((tag.name, read(tag, piece.cells)) for tag in piece.named("CellData", *OF_CELLS)),
+                hidden=next((read(tag, piece.points) for tag in piece.named("PointData", GHOST_TYPE)), None),
+                faces=FaceLists(
+                    self._maybe(piece, "faces"), self._maybe(piece, "faceoffsets"), self._listed(piece)
+                ),
             )
+
+    def _maybe(self, piece: Piece, name: str) -> npt.NDArray[Any] | None:
+        return next((self.arrays.read(tag) for tag in piece.named("Cells", name)), None)
+
+    def _listed(self, piece: Piece) -> FourArrays | None:
+        points, ends, faces, cell_ends = (self._maybe(piece, name) for name in _LISTED)
+        if points is None or ends is None or faces is None or cell_ends is None:
+            return None
+        return points, ends, faces, cell_ends
 
     def _tag(self, piece: Piece, section: str, name: str | None) -> ArrayTag:
         """The first array of that name: of several time steps, the first."""

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from isocore.errors import InputError
+from isocore.readers.options import MeshOptions
 from isocore.readers.vtk_fields import FieldInfo
-from isocore.readers.vtk_mesh import PieceData, assembled
+from isocore.readers.vtk_mesh import assembled
+from isocore.readers.vtk_pieces import PieceData
 
 CORNERS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], np.float32)
 
@@ -22,7 +24,7 @@ def test_pieces_become_one_mesh_with_a_value_per_point() -> None:
     vectors = np.array([(3.0, 4.0), (0, 1), (6, 8), (5, 12)])
     field = FieldInfo("v", 2, "points", "Float64")
     pieces = [tetrahedron(vectors.ravel()), tetrahedron(2 * vectors.ravel())]
-    mesh = assembled("any.file", pieces, field, None)
+    mesh = assembled("any.file", pieces, field, None, MeshOptions(keep_duplicates=True))
     assert mesh.values.tolist() == [5, 1, 10, 13, 10, 2, 20, 26]
     assert mesh.tets.tolist() == [[0, 1, 2, 3], [4, 5, 6, 7]] and mesh.points.dtype == np.float64
     assert mesh.cell_counts == {"tetrahedra": 2} and mesh.field_name == "v"

@@ -173,11 +173,8 @@ def test_coordinates_that_are_not_finite_are_refused(tmp_path):
 @pytest.mark.parametrize(
     "number, name",
     [
-        (42, "polyhedra"),
-        (71, "Lagrange tetrahedra"),
-        (79, "Bezier hexahedra"),
-        (41, "convex point sets"),
-        (16, "hexagonal prisms"),
+        (55, "parametric tetrahedra"),
+        (67, "higher-order hexahedra"),
     ],
 )
 def test_cells_that_cannot_be_contoured_are_refused_by_name(number, name, tmp_path):

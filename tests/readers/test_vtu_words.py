@@ -68,7 +68,7 @@ def test_a_bad_word_far_into_a_long_array_has_its_own_number():
 
 def test_a_bad_word_among_integers_is_quoted():
     """A number with a point is no integer."""
-    with pytest.raises(Exception, match=r"holds '2.5' in line 2 as number 3, which is no integer"):
+    with pytest.raises(Exception, match=r"holds '2\.5' in line 2 as number 3, which is no integer"):
         integers(b"+1 -7\n2.5", 0, 9)
 
 

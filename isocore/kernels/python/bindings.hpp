@@ -16,5 +16,6 @@ void bind_climbing(nanobind::module_& module);
 void bind_grid_thinning(nanobind::module_& module);
 void bind_rivals(nanobind::module_& module);
 void bind_ambiguities(nanobind::module_& module);
+void bind_joining(nanobind::module_& module);
 
 }  // namespace isocore::python

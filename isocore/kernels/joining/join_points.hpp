@@ -1,0 +1,23 @@
+// join_points.hpp - Which points of a mesh coincide.
+// points: x, y, z of each, finite. Returns for every point the lowest point that it is joined with, itself where that
+// is none: exactly equal coordinates for a distance of 0 (-0.0 equals 0.0), else the lowest point not joined with
+// another that lies within `distance`. So no two points that stand for others lie within the distance, and no chain of
+// small steps joins what lies farther apart. Linear in the number of points.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "common/array.hpp"
+
+namespace isocore {
+
+struct JoinedPoints {
+    Array<std::int32_t> with;  // per point
+    std::size_t joined = 0;    // points that are joined with another
+};
+
+// Throws std::length_error for more points than an int32 can name.
+JoinedPoints join_points(const double* points, std::size_t count, double distance);
+
+}  // namespace isocore
