@@ -22,7 +22,7 @@ help:  ## list the targets
 
 $(TOOLS):
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(PIP) -q "scikit-build-core>=0.11" "nanobind>=2.4" "cmake>=3.20" ninja
+	$(PIP) -q "scikit-build-core>=0.11" "nanobind>=2.4" "click>=8.1" "cmake>=3.20" ninja
 	touch $@
 
 $(BUILT): $(SOURCES) | $(TOOLS)

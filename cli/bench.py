@@ -12,6 +12,7 @@ import click
 from isocore.errors import printable
 
 from .console import say, screen_width, styled, unarmed
+from .groups import GroupedCommand, option_of
 from .options import PATH, Reading, default_threads, reading_options
 from .table import columns_of, set_table
 
@@ -42,10 +43,16 @@ class Wanted:
             raise click.UsageError("-i, --csv, --markdown and --plot belong to -b asc; -b thinning takes --isovalues")
 
 
-@click.command(short_help="The papers' tables on your own data.")
+@click.command(cls=GroupedCommand, short_help="The papers' tables on your own data.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
-@click.option(
+@option_of("Isovalue")(
+    "-i", "--isovalue", metavar="V", show_default="auto", help="Volumes: a number, otsu, pNN or auto, as in convert."
+)
+@option_of("Isovalue")(
+    "--isovalues", default=20, show_default=True, type=click.IntRange(1), metavar="N", help="Meshes, thinning: number."
+)
+@option_of("Method")(
     "-b",
     "--backend",
     type=click.Choice(["asc", "thinning"]),
@@ -53,13 +60,13 @@ class Wanted:
     show_default=True,
     help="Volumes: climbing against marching cubes, or thinning against its rivals.",
 )
-@click.option("-i", "--isovalue", metavar="V", help="Volumes: a number, otsu or pNN; default as in convert.")
-@click.option("--csv", type=PATH, metavar="FILE", help="Volumes: the table as CSV.")
-@click.option("--markdown", type=PATH, metavar="FILE", help="Volumes: the table as Markdown.")
-@click.option("--plot", type=PATH, metavar="FILE", help="Volumes: triangles and time by block size, SVG.")
-@click.option("--isovalues", default=20, show_default=True, type=click.IntRange(1), help="Meshes, thinning: how many.")
-@click.option("--threads", default=None, type=click.IntRange(1), help="Threads for drawing.")
-@click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
+@option_of("Method")(
+    "--threads", type=click.IntRange(1), metavar="N", show_default="all processors", help="Threads for drawing."
+)
+@option_of("Report")("--csv", type=PATH, metavar="FILE", help="Volumes: the table as CSV.")
+@option_of("Report")("--markdown", type=PATH, metavar="FILE", help="Volumes: the table as Markdown.")
+@option_of("Report")("--plot", type=PATH, metavar="FILE", help="Volumes: triangles and time by block size, SVG.")
+@option_of("Report")("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
 def bench(
     context: click.Context, files: tuple[Path, ...], threads: int | None, as_json: bool, **chosen: Any

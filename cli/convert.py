@@ -15,6 +15,7 @@ from isocore.choices import FORMATS, Format, distinct
 from isocore.requirements import REQUIREMENTS
 
 from .convert_options import ConvertOptions, convert_options
+from .groups import GroupedCommand
 from .options import default_threads
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from isocore.report import BatchReport
 
 
-@click.command(short_help="Volumes and meshes to surfaces.")
+@click.command(cls=GroupedCommand, short_help="Volumes and meshes to surfaces.")
 @click.pass_context
 @convert_options
 def convert(context: click.Context, options: ConvertOptions) -> None:
@@ -129,8 +130,7 @@ def _check_stdout(options: ConvertOptions) -> None:
 
 def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ...]) -> Job:
     """The job that all jobs are like, but for their source and targets."""
-    from isocore.backends import BACKENDS, check_options
-    from isocore.errors import OptionError
+    from isocore.backends import check_options
     from isocore.job import Job, Options
 
     options = Options(
@@ -142,8 +142,6 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
     )
     backend = None if asked.backend == "auto" else asked.backend
     if backend is not None:
-        if backend not in BACKENDS:
-            raise OptionError(f"-b {backend}: no such backend; choose one of auto, {', '.join(BACKENDS)}")
         check_options(backend, options)
     return Job(
         source=Path(),

@@ -8,10 +8,11 @@ from time import perf_counter
 import click
 
 from .console import say, tell
+from .groups import GroupedCommand
 from .options import PATH, Reading, reading_options
 
 
-@click.command(short_help="Build the thinning index beside a mesh.")
+@click.command(cls=GroupedCommand, short_help="Build the thinning index beside a mesh.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
 @click.pass_context

@@ -11,6 +11,7 @@ import click
 from isocore.errors import printable
 
 from .console import say, screen_width, styled, unarmed
+from .groups import GroupedCommand, option_of
 from .options import PATH, Reading, default_threads, reading_options
 from .table import cells_of, folded
 
@@ -23,10 +24,10 @@ _BARS = " ▁▂▃▄▅▆▇█"
 _ROWS = 6
 
 
-@click.command(short_help="What a file holds, and which isovalues make sense.")
+@click.command(cls=GroupedCommand, short_help="What a file holds, and which isovalues make sense.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @reading_options
-@click.option("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
+@option_of("Report")("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
 def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading: Reading) -> None:
     """Say what each FILE holds and which isovalues make sense.

@@ -22,9 +22,19 @@ COMMANDS = {
     "index": "thin meshes now, and keep the index beside them",
     "bench": "the papers' tables on your own data",
     "report": "turn JSON reports into tables and CI formats; compare two",
+    "completion": "what makes bash, zsh or fish complete commands and options",
 }
 
 FAILED, WRONG_COMMAND, MISSED, INTERRUPTED, TERMINATED = 1, 2, 3, 130, 143
+#: What the codes mean, for people.
+EXIT_CODES = {
+    0: "all done, or up to date",
+    FAILED: "some input failed",
+    WRONG_COMMAND: "the command line is wrong",
+    MISSED: "a requirement was missed",
+    INTERRUPTED: "interrupted",
+    TERMINATED: "terminated",
+}
 
 
 class Terminated(BaseException):
@@ -46,6 +56,8 @@ class _LateGroup(click.Group):
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
         with formatter.section("Commands"):
             formatter.write_dl(list(COMMANDS.items()))
+        with formatter.section("Exit codes"):
+            formatter.write_dl([(str(code), meaning) for code, meaning in EXIT_CODES.items()])
 
 
 def _show_version(context: click.Context, _: click.Parameter, wanted: bool) -> None:

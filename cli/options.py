@@ -1,10 +1,8 @@
-"""Options that commands share, and how their texts become values."""
+"""Options that commands share."""
 
 from __future__ import annotations
 
-import math
 import os
-import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from functools import wraps
@@ -14,129 +12,14 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import click
 
 from isocore import choices
-from isocore.errors import OptionError
+
+from .groups import option_of
+from .values import Numbers, Offset, Positive, VolumeChoice
 
 if TYPE_CHECKING:
     from isocore.readers.options import ReadOptions
 
 F = TypeVar("F", bound=Callable[..., Any])
-
-
-class Numbers(click.ParamType):
-    """Three numbers, as 64,64,32."""
-
-    def __init__(self, kind: type[int] | type[float]) -> None:
-        self._kind = kind
-        self.name = "A,B,C"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        """Split and check."""
-        if isinstance(value, tuple):
-            return value
-        try:
-            numbers = tuple(self._kind(part) for part in re.split(r"[,x]", value))
-        except ValueError:
-            numbers = ()
-        if len(numbers) != 3:
-            self.fail(f"{value}: needs three numbers, as 64,64,32", parameter, context)
-        return numbers
-
-
-class Offset(click.ParamType):
-    """Bytes before a raw file's samples (352), or the point that vertices are written about (auto or X,Y,Z)."""
-
-    name = "auto|X,Y,Z|BYTES"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        """A number of bytes, or the point."""
-        if str(value).isdecimal():
-            return int(value)
-        try:
-            return choices.parse_about(str(value))
-        except OptionError:
-            self.fail(f"{value}: needs auto or X,Y,Z, or a number of bytes for raw files", parameter, context)
-
-
-class Positive(click.ParamType):
-    """A finite number above 0."""
-
-    name = "EPS"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
-        """The number."""
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
-        if not 0 < number < math.inf:
-            self.fail(f"{value}: needs a number above 0", parameter, context)
-        return number
-
-
-class MaxErrorType(click.ParamType):
-    """Voxels (0.5), world units (0.3mm), or none."""
-
-    name = "E"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> choices.MaxError:
-        """The bound; whether a volume knows its unit is the backend's business."""
-        try:
-            return choices.parse_max_error(str(value).lower())
-        except OptionError:
-            self.fail(f"{value}: needs voxels (0.5), world units (0.3mm) or none", parameter, context)
-
-
-class Isovalue(click.ParamType):
-    """A number, otsu, pNN or auto; A:B:N are several."""
-
-    name = "V"
-
-    def convert(
-        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
-    ) -> tuple[choices.Choice, ...]:
-        """The choices, one per surface."""
-        return choices.spread(str(value))
-
-
-class VolumeChoice(click.ParamType):
-    """Which volume of a 4-D file."""
-
-    name = "K|all"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int | str:
-        """A number from 0, or all."""
-        if value == "all":
-            return "all"
-        if not str(value).isdecimal():
-            self.fail(f"{value}: needs a number from 0, or all", parameter, context)
-        return int(value)
-
-
-class Memory(click.ParamType):
-    """Bytes, as 4G, 500M or a plain number."""
-
-    name = "SIZE"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
-        """The number of bytes."""
-        match = re.fullmatch(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[kmgt]?)(i?b)?", str(value).strip().lower())
-        if not match:
-            self.fail(f"{value}: needs a size, as 500M or 4G", parameter, context)
-        return int(float(match["number"]) * 1024 ** " kmgt".index(match["unit"] or " "))
-
-
-class Jobs(click.ParamType):
-    """How many inputs at once."""
-
-    name = "N|auto"
-
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int | str:
-        """A number from 1, or auto."""
-        if value == "auto" or isinstance(value, int):
-            return value
-        if not str(value).isdecimal() or int(value) < 1:
-            self.fail(f"{value}: needs a number from 1, or auto", parameter, context)
-        return int(value)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -179,7 +62,7 @@ def reading_options(command: Callable[..., None]) -> Callable[..., None]:
 
 
 def reading_and_offset_options(command: Callable[..., None]) -> Callable[..., None]:
-    """As reading_options, for a command that writes vertices: `--offset` takes bytes or a point, each once.
+    """As reading_options, for a command with the option OFFSETS: `--offset` takes bytes or a point, each once.
 
     The command gets the point as one more argument, `about`.
     """
@@ -193,7 +76,7 @@ def reading_and_offset_options(command: Callable[..., None]) -> Callable[..., No
             raise click.UsageError("--offset: is given twice; once for bytes and once for a point is all there is")
         inner(*arguments, offset=raw[0] if raw else None, about=points[0] if points else None, **values)
 
-    return with_all(with_offsets, (*_READING_OPTIONS, _OFFSETS))
+    return with_all(with_offsets, _READING_OPTIONS)
 
 
 def _with_reading(command: Callable[..., None]) -> Callable[..., None]:
@@ -207,29 +90,60 @@ def _with_reading(command: Callable[..., None]) -> Callable[..., None]:
     return with_reading
 
 
+_input = option_of("Input")
+
 _READING_OPTIONS = (
-    click.option("--volume", type=VolumeChoice(), help="4-D input: which volume, from 0, or all."),
-    click.option("--field", metavar="NAME", help="VTU: which point field."),
-    click.option("--component", metavar="I|magnitude", help="VTU: which component of a vector field."),
-    click.option(
+    _input(
+        "--volume",
+        type=VolumeChoice(),
+        metavar="K|all",
+        show_default="the only one",
+        help="Which volume of a 4-D input, counted from 0, or all.",
+    ),
+    _input("--field", metavar="NAME", show_default="the only one", help="Which point field of a mesh."),
+    _input(
+        "--component",
+        metavar="I|magnitude",
+        help="Which component of a mesh's vector field, counted from 0, or its length; needed for one.",
+    ),
+    _input(
         "--merge-points",
         type=Positive(),
         metavar="EPS",
-        help="Meshes: join points within this distance too, not only those at equal coordinates.",
+        show_default="0",
+        help="Meshes: join points within this distance, not only those at equal coordinates.",
     ),
-    click.option("--keep-duplicates", is_flag=True, help="Meshes: join no points."),
-    click.option("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis."),
-    click.option("--dtype", metavar="T", help="Raw: uint8, int16, float32 and so on."),
-    click.option("--spacing", type=Numbers(float), metavar="A,B,C", help="Raw: distance of samples per axis."),
-    click.option("--origin", type=Numbers(float), metavar="A,B,C", help="Raw: place of the first sample."),
-    click.option("--byte-order", type=click.Choice(["little", "big"]), help="Raw: default little."),
+    _input("--keep-duplicates", is_flag=True, help="Meshes: join no points."),
+    _input("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis, as 64,64,32; needed."),
+    _input("--dtype", metavar="T", help="Raw: int8 to int64, uint8 to uint64, float32 or float64; needed."),
+    _input(
+        "--spacing", type=Numbers(float), metavar="A,B,C", show_default="1,1,1", help="Raw: distance of samples."
+    ),
+    _input(
+        "--origin", type=Numbers(float), metavar="A,B,C", show_default="0,0,0", help="Raw: place of the first sample."
+    ),
+    _input(
+        "--byte-order",
+        type=click.Choice(["little", "big"], case_sensitive=False),
+        show_default="little",
+        help="Raw: of each sample.",
+    ),
 )
 
-_RAW_OFFSET = click.option(
-    "--offset", type=click.IntRange(min=0), metavar="BYTES", help="Raw: bytes before the samples."
+_RAW_OFFSET = _input(
+    "--offset",
+    type=click.IntRange(min=0),
+    metavar="BYTES",
+    show_default="0",
+    help="Raw: bytes before the samples. What a NAME.raw.json beside the file says needs no option.",
 )
-_OFFSETS = click.option(
-    "--offset", multiple=True, type=Offset(), help="Write vertices about this point; raw: bytes before the samples."
+OFFSETS = option_of("Output")(
+    "--offset",
+    multiple=True,
+    type=Offset(),
+    metavar="auto|X,Y,Z|BYTES",
+    show_default="0",
+    help="Write vertices about this point, or one that isocore chooses; raw: bytes before the samples.",
 )
 
 

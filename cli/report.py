@@ -8,7 +8,9 @@ from pathlib import Path
 import click
 
 from .console import say
-from .options import PATH, Memory
+from .groups import GroupedCommand
+from .options import PATH
+from .values import Memory
 
 #: Of the columns of a comparison: whether set to the right, in which place it leaves a narrow screen, and whether it
 #: holds names.
@@ -25,7 +27,7 @@ _COMPARED = (
 )
 
 
-@click.command(short_help="Turn JSON reports into tables, pages and CI formats; compare two.")
+@click.command(cls=GroupedCommand, short_help="Turn JSON reports into tables, pages and CI formats; compare two.")
 @click.argument("reports", nargs=-1, required=True, type=PATH, metavar="REPORT...")
 @click.option("--to", "targets", multiple=True, type=PATH, metavar="FILE", help="By suffix, or bench.json; repeatable.")
 @click.option("--compare", is_flag=True, help="Set the second REPORT beside the first.")

@@ -21,6 +21,10 @@ Format: TypeAlias = Literal["ply", "obj", "stl"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 #: Those that hold a normal for every vertex.
 SHADED_FORMATS = frozenset({"ply", "obj"})
+#: Methods by name; the first is chosen by the field and by what is asked of it.
+BACKEND_NAMES = ("auto", "asc", "thinning", "mc")
+#: What the coordinates of vertices may mean; as volume.Space.
+SPACES = ("ras", "lps", "las", "native", "index")
 BLOCK_SIZES = (1, 2, 4, 8, 16, 32)
 TOPOLOGIES = ("faces", "trilinear")
 #: Millimetres in one unit of length.

@@ -18,13 +18,16 @@ SAMPLES = Path(__file__).resolve().parent.parent / "sample_volumes"
 def problems(wheel: Path) -> list[str]:
     """What is wrong with a wheel's content; empty if nothing."""
     names = zipfile.ZipFile(wheel).namelist()
-    tops = {name.split("/")[0] for name in names if ".dist-info/" not in name}
+    tops = {name.split("/")[0] for name in names if ".dist-info/" not in name and ".data/data/share/man/" not in name}
     found = []
     if tops != {"isocore"}:
         found.append(f"{wheel.name}: top-level names are {sorted(tops)}, not isocore alone")
     for needed in ("isocore/py.typed", "isocore/_kernels.pyi", "isocore/cli/main.py", "isocore/batches/worker.py"):
         if needed not in names:
             found.append(f"{wheel.name}: {needed} is missing")
+    manual = {name.split("/")[-1] for name in names if "/share/man/man1/" in name}
+    if not {"isocore.1", "isocore-convert.1"} <= manual:
+        found.append(f"{wheel.name}: man pages are missing; it has {sorted(manual)}")
     for module in ("_processor", *(f"_kernels_{build}" for build in builds(wheel))):
         if not any(name.startswith(f"isocore/{module}.") and name.endswith((".so", ".pyd")) for name in names):
             found.append(f"{wheel.name}: the compiled module {module} is missing")

@@ -1,0 +1,163 @@
+"""How the texts of options become values, and which words a shell may complete."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem
+
+from isocore import choices
+from isocore.errors import OptionError
+
+
+class _Worded(click.ParamType):
+    """A type some of whose values are words, which a shell can complete."""
+
+    words: tuple[str, ...] = ()
+
+    def shell_complete(
+        self, context: click.Context, parameter: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """The words that begin so."""
+        return [CompletionItem(word) for word in self.words if word.startswith(incomplete.lower())]
+
+
+class Numbers(click.ParamType):
+    """Three numbers, as 64,64,32."""
+
+    def __init__(self, kind: type[int] | type[float]) -> None:
+        self._kind = kind
+        self.name = "A,B,C"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """Split and check."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            numbers = tuple(self._kind(part) for part in re.split(r"[,x]", value))
+        except ValueError:
+            numbers = ()
+        if len(numbers) != 3:
+            self.fail(f"{value}: needs three numbers, as 64,64,32", parameter, context)
+        return numbers
+
+
+class Offset(click.ParamType):
+    """Bytes before a raw file's samples (352), or the point that vertices are written about (auto or X,Y,Z)."""
+
+    name = "auto|X,Y,Z|BYTES"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """A number of bytes, or the point."""
+        if str(value).isdecimal():
+            return int(value)
+        try:
+            return choices.parse_about(str(value))
+        except OptionError:
+            self.fail(f"{value}: needs auto or X,Y,Z, or a number of bytes for raw files", parameter, context)
+
+
+class Positive(click.ParamType):
+    """A finite number above 0."""
+
+    name = "EPS"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """The number."""
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not 0 < number < math.inf:
+            self.fail(f"{value}: needs a number above 0", parameter, context)
+        return number
+
+
+class MaxErrorType(_Worded):
+    """Voxels (0.5), world units (0.3mm), or none."""
+
+    name = "E"
+    words = ("none",)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> choices.MaxError:
+        """The bound; whether a volume knows its unit is the backend's business."""
+        try:
+            return choices.parse_max_error(str(value).lower())
+        except OptionError:
+            self.fail(f"{value}: needs voxels (0.5), world units (0.3mm) or none", parameter, context)
+
+
+class Isovalue(_Worded):
+    """A number, otsu, pNN or auto; A:B:N are several."""
+
+    name = "V"
+    words = ("auto", "otsu")
+
+    def convert(
+        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
+    ) -> tuple[choices.Choice, ...]:
+        """The choices, one per surface."""
+        return choices.spread(str(value))
+
+
+class VolumeChoice(_Worded):
+    """Which volume of a 4-D file."""
+
+    name = "K|all"
+    words = ("all",)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int | str:
+        """A number from 0, or all."""
+        if value == "all":
+            return "all"
+        if not str(value).isdecimal():
+            self.fail(f"{value}: needs a number from 0, or all", parameter, context)
+        return int(value)
+
+
+class Memory(click.ParamType):
+    """Bytes, as 4G, 500M or a plain number."""
+
+    name = "SIZE"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
+        """The number of bytes."""
+        match = re.fullmatch(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[kmgt]?)(i?b)?", str(value).strip().lower())
+        if not match:
+            self.fail(f"{value}: needs a size, as 500M or 4G", parameter, context)
+        return int(float(match["number"]) * 1024 ** " kmgt".index(match["unit"] or " "))
+
+
+class Jobs(_Worded):
+    """How many inputs at once."""
+
+    name = "N|auto"
+    words = ("auto",)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int | str:
+        """A number from 1, or auto."""
+        if value == "auto" or isinstance(value, int):
+            return value
+        if not str(value).isdecimal() or int(value) < 1:
+            self.fail(f"{value}: needs a number from 1, or auto", parameter, context)
+        return int(value)
+
+
+class Words(_Worded):
+    """Several words, with commas or blanks between them; whoever reads them checks them."""
+
+    name = "LIST"
+
+    def __init__(self, words: tuple[str, ...]) -> None:
+        self.words = words
+
+    def shell_complete(
+        self, context: click.Context, parameter: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Each word after those that are there already."""
+        before, comma, last = incomplete.rpartition(",")
+        items = super().shell_complete(context, parameter, last)
+        return [CompletionItem(before + comma + item.value) for item in items]
