@@ -122,7 +122,7 @@ def test_a_second_run_skips_what_is_up_to_date(scans: Path, tmp_path: Path) -> N
     dry = convert(*arguments, "--dry-run").stdout
     assert [reason in dry for reason in ("input changed", "output changed", "no output yet")] == [True] * 3
     assert sorted(statuses()) == ["done"] * 3 + ["skipped"] * 9
-    assert statuses("--normals") == ["done"] * 12
+    assert statuses("--no-normals") == ["done"] * 12
     assert statuses("--force") == ["done"] * 12
     assert contents(tmp_path / "out").keys() == before.keys()
 
