@@ -98,6 +98,17 @@ def gradient_normals(
     samples: _Samples, vertices: _Real, triangles: _Int32, below: bool, threads: int = 1
 ) -> _Float32: ...
 def triangle_normals(vertices: _Real, triangles: _Int32) -> _Float32: ...
+def mesh_normals(
+    points: _Float64,
+    tets: _Int32,
+    hexes: _Int32,
+    values: _Real,
+    isovalue: float,
+    edges: _Int32,
+    vertices: _Real,
+    triangles: _Int32,
+    threads: int = 1,
+) -> _Float32: ...
 def format_rows(tag: str, rows: _Real, threads: int = 1) -> bytes: ...
 def nine_digits(rows: _Float64, threads: int = 1) -> _Float64: ...  # (n, 3), as the text of format_rows is read
 def weld(vertices: _Real, threads: int = 1) -> _Int32: ...  # the earliest vertex of each place; (0,): all differ
@@ -109,6 +120,7 @@ class MarchedMesh(NamedTuple):
     vertices: _Real  # the mesh's space; float32 if `single`
     triangles: _Int32
     intersected: int  # cells
+    edges: _Int32  # (v, 2) point ids, or (0, 2)
 
 def marching_cells(
     points: _Float64,
@@ -118,6 +130,7 @@ def marching_cells(
     isovalue: float,
     threads: int = 1,
     single: bool = False,
+    with_edges: bool = False,
 ) -> MarchedMesh: ...
 
 # statistics: samples as a flat view in memory order
@@ -159,6 +172,7 @@ class WalkedMesh(NamedTuple):
     triangles: _Int32
     seeds: int  # skeleton cells that the isosurface meets
     visited: int  # all cells that it meets
+    edges: _Int32  # (v, 2) point ids, or (0, 2)
 
 class VisitedCells(NamedTuple):
     tets: _Int32  # in the index's numbers
@@ -185,7 +199,9 @@ class Index:
         edges: int,
         built: bool = False,
     ) -> None: ...
-    def propagate(self, isovalue: float, threads: int = 1, single: bool = False) -> WalkedMesh: ...
+    def propagate(
+        self, isovalue: float, threads: int = 1, single: bool = False, with_edges: bool = False
+    ) -> WalkedMesh: ...
     def walk(self, isovalue: float) -> VisitedCells: ...
 
 class WalkedVolume(NamedTuple):

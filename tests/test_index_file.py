@@ -46,7 +46,7 @@ def test_a_loaded_index_walks_as_a_built_one(path: Path, mesh: CellMesh) -> None
     for isovalue in meshes.isovalues(mesh, 5):
         one, other = built.propagate(isovalue), loaded.propagate(isovalue)
         assert all(np.array_equal(a, b) for a, b in zip(one[:2], other[:2], strict=True))
-        assert one[2:] == other[2:]
+        assert one[2:4] == other[2:4]
 
 
 def test_writing_twice_gives_the_same_bytes(path: Path, mesh: CellMesh) -> None:

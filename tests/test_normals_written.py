@@ -17,7 +17,7 @@ from isocore.backends import Options, extract
 from isocore.cell_mesh import CellMesh
 from isocore.volume import Volume
 
-MIDDLE = np.array([9.3, 10.1, 8.7])
+MIDDLE = np.array([15.3, 16.1, 15.7])
 #: Mirrored, stretched, turned and sheared worlds.
 AFFINES = {
     "plain": np.eye(4),
@@ -40,7 +40,7 @@ def run(*arguments: object) -> Result:
 
 def quadratic(affine: npt.NDArray[np.float64], slope: float = 1.0) -> Volume:
     """Samples of a field that is quadratic in the world, with a maximum (slope > 0: of the values) at MIDDLE."""
-    grid = np.stack(np.indices((20, 20, 20)), axis=-1) - MIDDLE
+    grid = np.stack(np.indices((32, 32, 32)), axis=-1) - MIDDLE
     world = grid @ affine[:3, :3].T
     return Volume(np.asfortranarray(-(world**2).sum(axis=-1) / slope), slope=slope, affine=affine)
 
@@ -49,15 +49,19 @@ def quadratic(affine: npt.NDArray[np.float64], slope: float = 1.0) -> Volume:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("slope", [1.0, -2.0])
 def test_normals_of_a_volume_are_the_fields_gradient_in_the_world(world, method, slope):
-    """Unit, within a degree of the true direction, and on the side to which the triangles turn, but for thin ones."""
+    """Unit, within a degree of the true direction, and on the side to which the triangles turn.
+
+    But for few: where a stretched voxel is as large as the body, the gradient contradicts the samples around it.
+    """
     volume = quadratic(AFFINES[world], slope)
     backend, options = METHODS[method]
-    surface = extract(volume, -9.0, backend=backend, options=options)
+    surface = extract(volume, -34.8, backend=backend, options=options)
     assert surface.normals is not None and len(surface.vertices) > 40
     outwards = surface.vertices - (volume.affine[:3, :3] @ MIDDLE + volume.affine[:3, 3])
     outwards /= np.linalg.norm(outwards, axis=1)[:, None]
     assert np.abs(np.linalg.norm(surface.normals, axis=1) - 1).max() < 1e-6
-    assert np.einsum("ij,ij->i", surface.normals, outwards).min() > np.cos(np.radians(1))
+    off = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", surface.normals, outwards), -1, 1)))
+    assert (off < 1).mean() > 0.97 and off.max() < 35
     corners = surface.vertices[surface.triangles].astype(np.float64)
     turned = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert (np.einsum("ij,ij->i", turned, surface.normals[surface.triangles[:, 0]]) > 0).mean() > 0.9
@@ -79,7 +83,7 @@ def test_normals_of_a_mesh_are_the_fields_gradient(backend, hexes):
     outwards = surface.vertices / np.linalg.norm(surface.vertices, axis=1)[:, None]
     assert np.abs(np.linalg.norm(surface.normals, axis=1) - 1).max() < 1e-6
     off = np.degrees(np.arccos(np.clip(np.einsum("ij,ij->i", surface.normals, outwards), -1, 1)))
-    assert off.max() < 20 and off.mean() < 9
+    assert off.max() < 6 and off.mean() < 2.5
 
 
 @pytest.mark.parametrize(
@@ -123,3 +127,35 @@ def test_a_stamp_of_stl_holds_whatever_is_said_of_normals(tmp_path: Path):
         out = ("-o", tmp_path / f"a.{format_}", "-i", 50, "--if-changed", "--json", "-q")
         outputs = [run(scan, *out, *asked).stdout for asked in ((), (), ("--no-normals",))]
         assert [text.split('"status": "')[1].split('"')[0] for text in outputs] == statuses
+
+
+@pytest.mark.parametrize("backend", ["mc", "thinning"])
+def test_normals_of_a_mesh_are_the_same_for_any_number_of_threads(backend):
+    """And for both ways to find the surface, vertex by vertex."""
+    mesh = meshes.mesh_of(np.ones((9, 8, 7), bool))
+    field = meshes.with_values(mesh, np.sin(mesh.points).sum(axis=1))
+    one, three = (extract(field, 0.4, backend=backend, options=Options(normals=True, threads=n)) for n in (1, 3))
+    assert one.normals is not None and three.normals is not None and len(one.vertices) > 100
+    assert np.array_equal(one.normals, three.normals) and np.array_equal(one.vertices, three.vertices)
+
+
+def test_a_gradient_that_contradicts_its_edge_gives_way_to_the_triangles():
+    """A single low sample in a steep ramp: the central difference at its edges points the wrong way."""
+    samples = np.asfortranarray(np.indices((9, 9, 9))[0].astype(np.float32) * 10)
+    samples[5, 4, 4] = 0
+    surface = extract(Volume(samples), 25.0, backend="mc", options=Options(normals=True))
+    assert surface.normals is not None
+    around = np.flatnonzero(np.abs(surface.vertices - [5, 4, 4]).max(axis=1) < 1)
+    inwards = np.array([5, 4, 4]) - surface.vertices[around]
+    assert len(around) == 6 and (np.einsum("ij,ij->i", surface.normals[around], inwards) > 0).all()
+
+
+@pytest.mark.parametrize("backend", ["mc", "thinning"])
+def test_normals_beside_a_value_that_is_no_number_are_still_unit(backend):
+    """Cells with such a value have no gradient; those around them do."""
+    mesh = meshes.mesh_of(np.ones((6, 6, 6), bool))
+    values = -np.sqrt(((mesh.points - 3.1) ** 2).sum(axis=1))
+    values[np.argsort(-values)[:40:3]] = np.nan
+    surface = extract(meshes.with_values(mesh, values), -1.7, backend=backend, options=Options(normals=True))
+    assert surface.normals is not None and len(surface.vertices) > 50
+    assert np.abs(np.linalg.norm(surface.normals, axis=1) - 1).max() < 1e-6

@@ -6,10 +6,8 @@ Doi, Koide 1991; Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991.
 from __future__ import annotations
 
 from time import perf_counter
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
@@ -30,9 +28,9 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
 
     def extract(isovalue: float) -> Extraction:
         marched = _kernels.marching_cells(
-            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single
+            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single, bool(options.normals)
         )
-        surface, seconds = mesh_surface(mesh, marched.vertices, marched.triangles, normals=options.normals)
+        surface, seconds = mesh_surface(mesh, marched, isovalue, options)
         search = Search(cells=mesh.cells, visited=mesh.cells, intersected=marched.intersected)
         return Extraction(surface, Findings(search=search), warnings, seconds)
 
@@ -59,13 +57,17 @@ def single_precision(mesh: CellMesh, offset: Point = (0.0, 0.0, 0.0)) -> bool:
 
 
 def mesh_surface(
-    mesh: CellMesh, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], *, normals: bool | None
+    mesh: CellMesh, found: _kernels.MarchedMesh | _kernels.WalkedMesh, isovalue: float, options: Options
 ) -> tuple[Surface, float]:
-    """A kernel's vertices (v, 3) and triangles (t, 3), which lie in the mesh's world already, as a Surface.
+    """A kernel's vertices and triangles, which lie in the mesh's world already, as a Surface.
 
     And the seconds that its normals took, where they are asked for.
     """
-    start = perf_counter()
-    directions = _kernels.triangle_normals(vertices, triangles) if normals else None
+    normals, start = None, perf_counter()
+    if options.normals:
+        cells = (mesh.points, mesh.tets, mesh.hexes, mesh.values)
+        normals = _kernels.mesh_normals(
+            *cells, isovalue, found.edges, found.vertices, found.triangles, options.threads
+        )
     seconds = perf_counter() - start
-    return Surface(vertices, triangles, directions, unit=mesh.unit), seconds
+    return Surface(found.vertices, found.triangles, normals, unit=mesh.unit), seconds

@@ -36,12 +36,13 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
     index, ready, warnings = _index_of(mesh, outlook)
+    with_edges = bool(options.normals)
     single, foreign = single_precision(mesh), outlook.index is not None
 
     def extract(isovalue: float) -> Extraction:
         nonlocal index, ready, warnings, foreign
         try:
-            walked = ready.propagate(isovalue, options.threads, single=single)
+            walked = ready.propagate(isovalue, options.threads, single, with_edges)
         except ValueError as error:  # the index beside the mesh has no damage, but was not made by us
             if not foreign:
                 raise
@@ -49,8 +50,8 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             warnings = (f"{outlook.index}: is wrong ({error}); {AGAIN}; thinned anew",)
             index = build_index(mesh)
             ready = ready_index(mesh, index, built=True)
-            walked = ready.propagate(isovalue, options.threads, single=single)
-        surface, seconds = mesh_surface(mesh, walked.vertices, walked.triangles, normals=options.normals)
+            walked = ready.propagate(isovalue, options.threads, single, with_edges)
+        surface, seconds = mesh_surface(mesh, walked, isovalue, options)
         search = Search(
             cells=mesh.cells,
             extrema=index.extrema,

@@ -18,7 +18,7 @@ Triangulated = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 
 
 def march(mesh: CellMesh, isovalue: float, threads: int = 1) -> Triangulated:
-    vertices, triangles, _ = _kernels.marching_cells(
+    vertices, triangles, *_ = _kernels.marching_cells(
         mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, threads
     )
     return vertices, triangles

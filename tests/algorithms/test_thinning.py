@@ -37,7 +37,7 @@ def skeleton_of(mesh: CellMesh) -> list[int]:
 def assert_same_as_full_scan(mesh: CellMesh, limit: int = 12) -> None:
     ready = ready_index(mesh, build_index(mesh))
     for isovalue in meshes.isovalues(mesh, limit):
-        vertices, triangles, seeds, visited = ready.propagate(isovalue)
+        vertices, triangles, seeds, visited, _ = ready.propagate(isovalue)
         scanned = _kernels.marching_cells(mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue)
         assert visited == scanned[2]
         assert (seeds > 0) == (visited > 0)

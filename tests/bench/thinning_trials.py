@@ -42,8 +42,8 @@ def components(vertices: np.ndarray, triangles: np.ndarray) -> int:
 def compare(mesh: CellMesh, limit: int, count: Tally) -> None:
     ready = ready_index(mesh, build_index(mesh))
     for isovalue in meshes.isovalues(mesh, limit):
-        vertices, triangles, _, visited = ready.propagate(isovalue)
-        all_vertices, all_triangles, intersected = _kernels.marching_cells(
+        vertices, triangles, _, visited, _ = ready.propagate(isovalue)
+        all_vertices, all_triangles, intersected, _ = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue
         )
         there = components(all_vertices, all_triangles)

@@ -159,7 +159,7 @@ class Joiner {
 }  // namespace
 
 template <class Coordinate, class Value>
-Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double isovalue, int threads) {
+Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double isovalue, int threads, bool with_edges) {
     const Array<std::uint8_t> signs = classify(field, isovalue, threads);
     const std::size_t tet_chunks = (cells.tet_count + kChunk - 1) / kChunk,
                       hex_chunks = (cells.hex_count + kChunk - 1) / kChunk;
@@ -180,10 +180,15 @@ Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double iso
     Mesh<Coordinate> mesh;
     Joiner joiner(drawn, merged, mesh);
     const std::size_t vertices = merged.edges.size();
+    mesh.edges.resize(with_edges ? 2 * vertices : 0);
     parallel_for(threads, vertices / kChunk + 1, [&](std::size_t chunk) {
         const std::size_t end = std::min(vertices, (chunk + 1) * kChunk);
         for (std::size_t n = chunk * kChunk; n < end; ++n)
             field.cross(merged.edges[n].low, merged.edges[n].high, isovalue, mesh.vertices.data() + 3 * n);
+        for (std::size_t n = chunk * kChunk; with_edges && n < end; ++n) {
+            mesh.edges[2 * n] = merged.edges[n].low;
+            mesh.edges[2 * n + 1] = merged.edges[n].high;
+        }
     });
     parallel_for(threads, drawn.size(), [&](std::size_t chunk) { joiner.join(chunk); });
     for (const Drawn& chunk : drawn) mesh.intersected += chunk.intersected;
@@ -191,9 +196,9 @@ Mesh<Coordinate> march(const Field<Value>& field, const Cells& cells, double iso
     return mesh;
 }
 
-template Mesh<float> march<float>(const Field<float>&, const Cells&, double, int);
-template Mesh<float> march<float>(const Field<double>&, const Cells&, double, int);
-template Mesh<double> march<double>(const Field<float>&, const Cells&, double, int);
-template Mesh<double> march<double>(const Field<double>&, const Cells&, double, int);
+template Mesh<float> march<float>(const Field<float>&, const Cells&, double, int, bool);
+template Mesh<float> march<float>(const Field<double>&, const Cells&, double, int, bool);
+template Mesh<double> march<double>(const Field<float>&, const Cells&, double, int, bool);
+template Mesh<double> march<double>(const Field<double>&, const Cells&, double, int, bool);
 
 }  // namespace isocore::marching_cells

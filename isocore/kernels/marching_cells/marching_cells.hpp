@@ -23,11 +23,13 @@ template <class Coordinate>
 struct Mesh {
     Array<Coordinate> vertices;     // x, y, z, x, y, z ...
     Array<std::int32_t> triangles;  // three vertices each
+    Array<std::int32_t> edges;      // where asked for, the two point ids of each vertex's mesh edge, the lower first
     std::size_t intersected = 0;    // cells that the isosurface meets
 };
 
 // Instantiated for float and double.
 template <class Coordinate, class Value>
-Mesh<Coordinate> march(const mesh::Field<Value>& field, const Cells& cells, double isovalue, int threads);
+Mesh<Coordinate> march(const mesh::Field<Value>& field, const Cells& cells, double isovalue, int threads,
+                       bool with_edges = false);
 
 }  // namespace isocore::marching_cells

@@ -104,9 +104,9 @@ class Index {
     }
 
   public:
-    nb::object propagate(double isovalue, int threads, bool single, const NamedTuple& walked_mesh) {
-        return single ? propagate_to<float>(isovalue, threads, walked_mesh)
-                      : propagate_to<double>(isovalue, threads, walked_mesh);
+    nb::object propagate(double isovalue, int threads, bool single, bool with_edges, const NamedTuple& walked_mesh) {
+        return single ? propagate_to<float>(isovalue, threads, with_edges, walked_mesh)
+                      : propagate_to<double>(isovalue, threads, with_edges, walked_mesh);
     }
 
     nb::object walk(double isovalue, const NamedTuple& visited_cells) {
@@ -117,11 +117,12 @@ class Index {
 
   private:
     template <class Coordinate>
-    nb::object propagate_to(double isovalue, int threads, const NamedTuple& walked_mesh) {
-        thinning::Mesh<Coordinate> mesh = with_field(
-            [&](const auto& field) { return thinning::propagate<Coordinate>(field, view_, isovalue, threads); });
+    nb::object propagate_to(double isovalue, int threads, bool with_edges, const NamedTuple& walked_mesh) {
+        thinning::Mesh<Coordinate> mesh = with_field([&](const auto& field) {
+            return thinning::propagate<Coordinate>(field, view_, isovalue, threads, with_edges);
+        });
         return walked_mesh(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.seeds,
-                           mesh.visited);
+                           mesh.visited, to_numpy(std::move(mesh.edges), 2));
     }
 
     Rows<double, 3> points_;
@@ -145,7 +146,7 @@ void bind_thinning(nb::module_& module) {
     bind_build<float>(module, index_part, built_index);
     bind_build<double>(module, index_part, built_index);
 
-    const NamedTuple walked_mesh(module, "WalkedMesh", {"vertices", "triangles", "seeds", "visited"});
+    const NamedTuple walked_mesh(module, "WalkedMesh", {"vertices", "triangles", "seeds", "visited", "edges"});
     const NamedTuple visited_cells(module, "VisitedCells", {"tets", "hexes", "seeds"});
     nb::class_<Index>(module, "Index")
         .def(nb::init<Rows<double, 3>, Index::Values, PartArrays<kTetRecord>, PartArrays<kHexRecord>,
@@ -154,10 +155,10 @@ void bind_thinning(nb::module_& module) {
              arg("original").noconvert(), arg("edges"), arg("built") = false)
         .def(
             "propagate",
-            [=](Index& index, double isovalue, int threads, bool single) {
-                return index.propagate(isovalue, threads, single, walked_mesh);
+            [=](Index& index, double isovalue, int threads, bool single, bool with_edges) {
+                return index.propagate(isovalue, threads, single, with_edges, walked_mesh);
             },
-            arg("isovalue"), arg("threads") = 1, arg("single") = false)
+            arg("isovalue"), arg("threads") = 1, arg("single") = false, arg("with_edges") = false)
         .def(
             "walk", [=](Index& index, double isovalue) { return index.walk(isovalue, visited_cells); },
             arg("isovalue"));

@@ -1,6 +1,9 @@
 // normals.hpp - Unit vertex normals that point outside, that is towards lower values.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "common/array.hpp"
 #include "common/grid.hpp"
 #include "surface/mesh_view.hpp"
@@ -8,8 +11,9 @@
 namespace isocore {
 
 // From the samples: central differences (one-sided at the border and beside a non-finite sample), interpolated
-// trilinearly at the vertex. Everything is in index space. `below`: a high sample is a low value. Where the
-// gradient vanishes, and for vertices beside the grid (a cap), the normal is that of the triangles.
+// trilinearly at the vertex. Everything is in index space. `below`: a high sample is a low value. Where the gradient
+// vanishes or contradicts the grid edge of the vertex, and for vertices beside the grid (a cap), the normal is that of
+// the triangles.
 template <class Sample, class Real>
 Array<float> gradient_normals(GridView<const Sample> samples, const MeshView<Real>& mesh, bool below, int threads);
 
@@ -17,5 +21,9 @@ Array<float> gradient_normals(GridView<const Sample> samples, const MeshView<Rea
 // Throws std::invalid_argument if a triangle names a vertex that is not there.
 template <class Real>
 Array<float> triangle_normals(const MeshView<Real>& mesh);
+
+// The same for the vertices named by `wanted` alone, into normals (vertex_count, 3).
+template <class Real>
+void store_triangle_normals(const MeshView<Real>& mesh, const std::vector<std::size_t>& wanted, float* normals);
 
 }  // namespace isocore

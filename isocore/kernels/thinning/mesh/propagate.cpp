@@ -61,6 +61,7 @@ class Drawing {
     void place_vertices(size_t task, Mesh<Coordinate>& mesh) {
         collect(task);
         size_t vertex = tasks_[task].before.vertices;
+        const bool with_edges = !mesh.edges.empty();
         const auto prefetch = [&](size_t, const int32_t* corners) {
             for (size_t n = 0; n < Cell::kCorners; ++n) {
                 ISOCORE_PREFETCH(field_.values + corners[n]);
@@ -75,6 +76,10 @@ class Drawing {
                 const int32_t a = corners[Cell::kShape.ends[edge][0]], b = corners[Cell::kShape.ends[edge][1]];
                 const bool ascending = index_.points[a] < index_.points[b];
                 field_.cross(ascending ? a : b, ascending ? b : a, isovalue_, mesh.vertices.data() + 3 * vertex);
+                if (with_edges) {
+                    mesh.edges[2 * vertex] = index_.points[ascending ? a : b];
+                    mesh.edges[2 * vertex + 1] = index_.points[ascending ? b : a];
+                }
                 vertex_on(corners, edge) = static_cast<int32_t>(vertex);
             }
         });
@@ -150,7 +155,8 @@ class Drawing {
 }  // namespace
 
 template <class Coordinate, class Value>
-Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, double isovalue, int threads) {
+Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, double isovalue, int threads,
+                           bool with_edges) {
     Walk<Tet, Value> tets(field, index.tets, isovalue);
     Walk<Hex, Value> hexes(field, index.hexes, isovalue);
     tets.run(threads);
@@ -164,6 +170,7 @@ Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, do
     Mesh<Coordinate> mesh;
     mesh.vertices.resize(3 * (all.vertices + all.middles));
     mesh.triangles.resize(3 * all.triangles);
+    mesh.edges.resize(with_edges ? 2 * all.vertices : 0);
     const size_t tasks = drawn_tets.tasks();
     parallel_for(threads, tasks + drawn_hexes.tasks(), [&](size_t task) {
         task < tasks ? drawn_tets.place_vertices(task, mesh) : drawn_hexes.place_vertices(task - tasks, mesh);
@@ -199,9 +206,9 @@ Visited walk(const Field<Value>& field, const IndexView& index, double isovalue)
 
 template Visited walk<float>(const Field<float>&, const IndexView&, double);
 template Visited walk<double>(const Field<double>&, const IndexView&, double);
-template Mesh<float> propagate<float>(const Field<float>&, const IndexView&, double, int);
-template Mesh<float> propagate<float>(const Field<double>&, const IndexView&, double, int);
-template Mesh<double> propagate<double>(const Field<float>&, const IndexView&, double, int);
-template Mesh<double> propagate<double>(const Field<double>&, const IndexView&, double, int);
+template Mesh<float> propagate<float>(const Field<float>&, const IndexView&, double, int, bool);
+template Mesh<float> propagate<float>(const Field<double>&, const IndexView&, double, int, bool);
+template Mesh<double> propagate<double>(const Field<float>&, const IndexView&, double, int, bool);
+template Mesh<double> propagate<double>(const Field<double>&, const IndexView&, double, int, bool);
 
 }  // namespace isocore::thinning

@@ -68,6 +68,7 @@ template <class Coordinate>
 struct Mesh {
     Array<Coordinate> vertices;     // x, y, z, x, y, z ...
     Array<std::int32_t> triangles;  // three vertices each
+    Array<std::int32_t> edges;      // where asked for, the two point ids of each vertex's mesh edge, the lower first
     std::size_t seeds = 0;          // skeleton cells the isosurface meets
     std::size_t visited = 0;        // cells walked, all of which it meets
 };
@@ -75,7 +76,8 @@ struct Mesh {
 // field: the points and values as the index numbers them. The index must be one that check_index accepts.
 // Throws std::invalid_argument where its skeleton leaves out cells that own a crossed edge.
 template <class Coordinate, class Value>
-Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads);
+Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads,
+                           bool with_edges = false);
 
 // The cells that propagate would draw, ascending.
 struct Visited {
