@@ -230,9 +230,44 @@ class GridIndex:
 # extrema_graph: the cells that the rival of 1995 registers
 def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes) -> _Int32: ...
 
+<<<<<<< HEAD
 # joining
 class JoinedPoints(NamedTuple):
     with_: _Int32  # (n,) the lowest point that each is joined with, itself where that is none
     joined: int  # points that are joined with another
 
 def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...
+=======
+class LabelCensus(NamedTuple):
+    values: _Float64  # ascending
+    counts: npt.NDArray[np.uint64]  # samples of each
+    not_a_number: int
+    too_many: bool  # more than `most` values: the rest was not counted
+    not_whole: float  # the first value that is no whole number; 0 if there is none
+
+def label_census(samples: npt.NDArray[Any], most: int) -> LabelCensus: ...
+
+class LabelSolid(NamedTuple):
+    vertices: _Float32  # index space
+    triangles: _Int32
+    shared: _Int32  # of each vertex: its number in the shared mesh
+
+class LabelMesh(NamedTuple):
+    vertices: _Float32  # index space
+    elements: _Bytes  # axes along which a vertex may move (1, 2, 4), and 8 where it stays
+    triangles: _Int32  # counter-clockwise seen from the side of lower rank
+    sides: npt.NDArray[np.uint32]  # two ranks per triangle, the higher first
+
+class LabelSurfaces:
+    @property
+    def vertices(self) -> int: ...
+    @property
+    def triangles(self) -> int: ...
+    def smooth(self, rounds: int, threads: int = 1) -> None: ...
+    def solid(self, rank: int) -> LabelSolid: ...
+    def shared(self) -> LabelMesh: ...
+
+def label_surfaces(
+    samples: _Samples, values: _Float64, ranks: npt.NDArray[np.uint32], threads: int = 1
+) -> LabelSurfaces: ...
+>>>>>>> eee856e (labels: Surfaces of all labels in one pass, smoothed inside the grid)

@@ -15,4 +15,5 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_grid_thinning(module);
     isocore::python::bind_rivals(module);
     isocore::python::bind_joining(module);
+    isocore::python::bind_labels(module);
 }

@@ -10,6 +10,7 @@ void test_facets();
 void test_polygons();
 void test_in_order();
 void test_cell_loops();
+void test_cell_disks();
 void test_climbing();
 void test_marching_cubes();
 void test_tubes();
@@ -25,6 +26,7 @@ int main() {
     test_polygons();
     test_in_order();
     test_cell_loops();
+    test_cell_disks();
     test_climbing();
     test_marching_cubes();
     test_tubes();

@@ -1,0 +1,91 @@
+// label_mesh.cpp - Slabs of a volume, extracted each for itself and joined in order.
+#include "labels/label_mesh.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "labels/slab.hpp"
+#include "samples/sample_types.hpp"
+
+namespace isocore::labels {
+namespace {
+
+// Layers of cells per slab: the plane below a slab is surveyed a second time, which is one part in as many.
+constexpr std::size_t kLayers = 16;
+
+// Writes a plane of ranks with background around it; planes before the first and after the last are background.
+template <class Sample>
+void load_plane(const GridView<Sample>& samples, const RankTable& ranks, std::size_t plane, std::uint32_t* out) {
+    const std::size_t row = samples.dims[0] + 2, rows = samples.dims[1] + 2;
+    if (plane == 0 || plane > samples.dims[2]) {
+        std::fill_n(out, row * rows, 0);
+        return;
+    }
+    std::fill_n(out, row, 0);
+    std::fill_n(out + row * (rows - 1), row, 0);
+    for (std::size_t j = 0; j < samples.dims[1]; ++j) {
+        std::uint32_t* line = out + row * (j + 1);
+        line[0] = line[row - 1] = 0;
+        ranks.look_up(samples.row(j, plane - 1), samples.dims[0], line + 1);
+    }
+}
+
+struct Sizes {
+    std::size_t vertices = 0, triangles = 0, curves = 0;
+};
+
+// Moves a slab's mesh to its place in the whole, and frees it. A negative number names a vertex of the plane below,
+// whose vertices end where the middles of the layer below begin.
+void place_slab(SlabMesh& slab, const Sizes& at, std::size_t middles_below, LabelMesh& out) {
+    const auto base = static_cast<std::int32_t>(at.vertices), below = base - static_cast<std::int32_t>(middles_below);
+    const auto renumber = [&](std::int32_t number) { return number + (number < 0 ? below : base); };
+    std::copy(slab.vertices.begin(), slab.vertices.end(), out.vertices.data() + 3 * at.vertices);
+    std::copy(slab.elements.begin(), slab.elements.end(), out.elements.data() + at.vertices);
+    std::copy(slab.sides.begin(), slab.sides.end(), out.sides.data() + 2 * at.triangles);
+    std::transform(slab.triangles.begin(), slab.triangles.end(), out.triangles.data() + 3 * at.triangles, renumber);
+    std::transform(slab.curves.begin(), slab.curves.end(), out.curves.data() + at.curves, renumber);
+    slab = {};
+}
+
+}  // namespace
+
+template <class Sample>
+LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads) {
+    const Dims dims{samples.dims[0] + 2, samples.dims[1] + 2, samples.dims[2] + 2};
+    const std::size_t layers = dims[2] - 1, count = (layers + kLayers - 1) / kLayers;
+    std::vector<SlabMesh> slabs(count);
+    parallel_for(
+        threads, count, [&] { return Slab(dims); },
+        [&](Slab& slab, std::size_t n) {
+            const auto load = [&](std::size_t plane, std::uint32_t* out) { load_plane(samples, ranks, plane, out); };
+            slabs[n] = slab.draw(n * kLayers, std::min(layers, (n + 1) * kLayers), load);
+        });
+    std::vector<Sizes> starts(count + 1);
+    for (std::size_t n = 0; n < count; ++n) {
+        starts[n + 1] = {starts[n].vertices + slabs[n].elements.size(), starts[n].triangles + slabs[n].sides.size() / 2,
+                         starts[n].curves + slabs[n].curves.size()};
+    }
+    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (starts[count].vertices > most || starts[count].triangles > most) {
+        throw std::length_error("the labels' surfaces have more than 2^31 vertices or triangles");
+    }
+    std::vector<std::size_t> middles(count + 1);
+    for (std::size_t n = 0; n < count; ++n) middles[n + 1] = slabs[n].last_middles;
+    LabelMesh mesh;
+    mesh.vertices.resize(3 * starts[count].vertices);
+    mesh.elements.resize(starts[count].vertices);
+    mesh.triangles.resize(3 * starts[count].triangles);
+    mesh.sides.resize(2 * starts[count].triangles);
+    mesh.curves.resize(starts[count].curves);
+    parallel_for(threads, count, [&](std::size_t n) { place_slab(slabs[n], starts[n], middles[n], mesh); });
+    return mesh;
+}
+
+#define ISOCORE_EXTRACT(Sample) template LabelMesh extract(GridView<Sample>, const RankTable&, int);
+ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_EXTRACT)
+#undef ISOCORE_EXTRACT
+
+}  // namespace isocore::labels

@@ -1,0 +1,92 @@
+// slab.hpp - Extracts a few layers of cells of a label map. Planes of samples pass by one after the other as ranks,
+// with a layer of background around each, and only the two planes of the present layer of cells are kept.
+//
+// Vertices are numbered as they are met: plane by plane those of the plane's own edges and faces, and, between two
+// planes, first those of edges and faces that stand on the lower plane, last those of cells. The plane below a slab
+// belongs to the slab before it: its vertices have negative numbers here, counted from the end of that plane.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "common/array.hpp"
+#include "labels/cell_disks.hpp"
+#include "labels/label_mesh.hpp"
+
+namespace isocore::labels {
+
+// The disks of cells that were met so far. Most cells show two labels, and have a table of their own.
+class DiskCache {
+  public:
+    DiskCache();
+    // By the corners whose label ranks higher, a bit each.
+    const CellDisks& of_two(unsigned higher) const { return of_two_[higher]; }
+    const CellDisks& of(const CornerRanks& ranks);
+
+  private:
+    std::vector<CellDisks> of_two_;
+    std::unordered_map<std::uint32_t, CellDisks> of_more_;
+};
+
+// What one slab has drawn, with vertices numbered from 0.
+struct SlabMesh : LabelMesh {
+    std::size_t last_middles = 0;  // vertices in the middles of cells of its last layer
+};
+
+class Slab {
+  public:
+    // `dims`: samples with the layer of background, which is two more along each axis.
+    explicit Slab(const Dims& dims);
+
+    // Draws the layers of cells `first` to `last` - 1. load(plane, out) writes a plane's ranks, dims[0] * dims[1] of
+    // them.
+    template <class Load>
+    SlabMesh draw(std::size_t first, std::size_t last, const Load& load) {
+        mesh_ = {};
+        load(first, low_.ranks.data());
+        survey_plane(low_);
+        number_plane(low_, first, first != 0);
+        for (std::size_t layer = first; layer < last; ++layer) {
+            load(layer + 1, high_.ranks.data());
+            survey_plane(high_);
+            survey_layer();
+            number_layer(layer);
+            number_plane(high_, layer + 1, false);
+            draw_layer(layer);
+            std::swap(low_, high_);
+        }
+        return std::move(mesh_);
+    }
+
+  private:
+    // Of each sample: is the edge to the next along x (bit 0) and along y (bit 1) crossed, and does the face between
+    // them have a vertex (bit 2)? And the numbers of their vertices.
+    struct Plane {
+        std::vector<std::uint32_t> ranks;
+        std::vector<std::uint8_t> marks;
+        std::array<std::vector<std::int32_t>, 3> numbers;  // along x, along y, in the face
+    };
+
+    void survey_plane(Plane& plane) const;
+    void survey_layer();
+    void number_plane(Plane& plane, std::size_t k, bool of_slab_before);
+    void number_layer(std::size_t k);
+    void draw_layer(std::size_t k);
+    void draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k);
+    void write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle);
+    std::int32_t add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element);
+
+    Dims dims_;
+    std::size_t row_, plane_;  // samples of a row, of a plane
+    Plane low_, high_;
+    std::vector<std::uint8_t> upright_marks_;  // as a plane's, of edges along z, faces of axis 1 (bit 1) and 0 (bit 2)
+    std::array<std::vector<std::int32_t>, 3> upright_numbers_;
+    DiskCache cache_;
+    SlabMesh mesh_;
+};
+
+}  // namespace isocore::labels

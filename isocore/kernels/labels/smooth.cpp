@@ -1,0 +1,280 @@
+// smooth.cpp - G. Taubin, "A signal processing approach to fair surface design", SIGGRAPH 1995: a step towards the mean
+// of the neighbours and a larger one back. A step does not take the mean's direction, in which a vertex of a grid edge
+// can hardly move, but goes to where the smoothed surface meets the edge: README.md.
+#include "labels/smooth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "common/parallel.hpp"
+
+namespace isocore::labels {
+namespace {
+
+constexpr float kSmoothing = 0.5f, kUndoing = -0.53f;
+constexpr float kHalfWidth = 0.45f;   // how far from its element's middle a vertex may go
+constexpr float kSteepest = 0.3f;     // what a normal or tangent is taken to have along an axis at least
+constexpr int kSamePace = 8;          // steps for which normals are good enough, once the first have smoothed them
+constexpr std::size_t kBlock = 2048;  // vertices that are sorted by their number of neighbours, and moved by one thread
+
+// Four lanes, so that a vertex is one load and one sum: compilers that know vectors of their own are given one, because
+// they leave sums of arrays to one lane after the other.
+#if defined(__GNUC__)
+using Lanes = float __attribute__((vector_size(16)));
+#else
+struct alignas(16) Lanes {
+    std::array<float, 4> v{};
+
+    float& operator[](std::size_t n) { return v[n]; }
+    const float& operator[](std::size_t n) const { return v[n]; }
+    Lanes& operator+=(const Lanes& other) {
+        for (std::size_t n = 0; n < 4; ++n) v[n] += other.v[n];
+        return *this;
+    }
+    friend Lanes operator-(Lanes a, const Lanes& b) {
+        for (std::size_t n = 0; n < 4; ++n) a.v[n] -= b.v[n];
+        return a;
+    }
+    friend Lanes operator*(Lanes a, const Lanes& b) {
+        for (std::size_t n = 0; n < 4; ++n) a.v[n] *= b.v[n];
+        return a;
+    }
+    friend Lanes operator*(float factor, Lanes a) {
+        for (std::size_t n = 0; n < 4; ++n) a.v[n] *= factor;
+        return a;
+    }
+};
+#endif
+
+float dot(const Lanes& a, const Lanes& b) {
+    const Lanes product = a * b;
+    return product[0] + product[1] + product[2];
+}
+
+Lanes turned(const Lanes& a) { return Lanes{a[1], a[2], a[0], 0}; }
+
+Lanes cross(const Lanes& a, const Lanes& b) { return turned(a * turned(b) - turned(a) * b); }
+
+// A component of a direction, no nearer to 0 than kSteepest.
+float steep(float component) { return std::copysign(std::max(std::abs(component), kSteepest), component); }
+
+// Keeps a coordinate that moves inside an edge, face or cell between two samples inside of it. Vertices lie beyond -1.
+float kept(float from, float to) {
+    const float middle = static_cast<float>(static_cast<int>(from + 1.0f)) - 0.5f;
+    return std::clamp(to, middle - kHalfWidth, middle + kHalfWidth);
+}
+
+using Places = std::vector<Lanes>;
+
+// The vertices of grid edges, which slide along them, with their rings of neighbours. They are sorted by the size of
+// their ring, block by block, so that loops over a ring have one length many times over.
+class EdgeVertices {
+  public:
+    explicit EdgeVertices(const LabelMesh& mesh) {
+        std::vector<std::uint8_t> sizes(mesh.elements.size(), 0);
+        for (const std::int32_t corner : mesh.triangles) ++sizes[static_cast<std::size_t>(corner)];
+        order(mesh, sizes);
+        fill(mesh);
+    }
+
+    // Moves all by one step, from their places in `from` to those in `to`.
+    void step(const Places& from, Places& to, float factor, bool new_normals, int threads) {
+        parallel_for(threads, blocks_.size() - 1, [&](std::size_t block) {
+            for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
+                if (new_normals) set_normals(runs_[n], from);
+                // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
+                switch (runs_[n].ring) {
+                    case 3:
+                        move<3>(runs_[n], from, to, factor);
+                        break;
+                    case 4:
+                        move<4>(runs_[n], from, to, factor);
+                        break;
+                    case 5:
+                        move<5>(runs_[n], from, to, factor);
+                        break;
+                    case 6:
+                        move<6>(runs_[n], from, to, factor);
+                        break;
+                    case 7:
+                        move<7>(runs_[n], from, to, factor);
+                        break;
+                    case 8:
+                        move<8>(runs_[n], from, to, factor);
+                        break;
+                    default:
+                        move<0>(runs_[n], from, to, factor);
+                }
+            }
+        });
+    }
+
+  private:
+    // Vertices `begin` to `end` of vertex_, whose rings have `ring` neighbours each, from ring_[first] on.
+    struct Run {
+        std::size_t begin, end, first, ring;
+    };
+
+    void order(const LabelMesh& mesh, const std::vector<std::uint8_t>& sizes) {
+        std::size_t first = 0;
+        std::array<std::vector<std::uint32_t>, 256> of_size;
+        for (std::size_t begin = 0; begin < sizes.size(); begin += kBlock) {
+            blocks_.push_back(runs_.size());
+            const std::size_t end = std::min(sizes.size(), begin + kBlock);
+            for (std::size_t v = begin; v < end; ++v) {
+                if (is_edge(mesh.elements[v])) of_size[sizes[v]].push_back(static_cast<std::uint32_t>(v));
+            }
+            for (std::size_t ring = 0; ring < of_size.size(); ++ring) {
+                if (of_size[ring].empty()) continue;
+                runs_.push_back({vertex_.size(), vertex_.size() + of_size[ring].size(), first, ring});
+                first += ring * of_size[ring].size();
+                vertex_.insert(vertex_.end(), of_size[ring].begin(), of_size[ring].end());
+                of_size[ring].clear();
+            }
+        }
+        blocks_.push_back(runs_.size());
+        for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
+        normal_.resize(vertex_.size());
+        ring_.resize(first);
+        behind_.resize(first);
+    }
+
+    // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
+    void fill(const LabelMesh& mesh) {
+        std::vector<std::uint32_t> place(mesh.elements.size(), kNone);
+        for (const Run& run : runs_) {
+            for (std::size_t n = run.begin; n < run.end; ++n) {
+                place[vertex_[n]] = static_cast<std::uint32_t>(run.first + (n - run.begin) * run.ring);
+            }
+        }
+        for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+            for (std::size_t n = 0; n < 3; ++n) {
+                std::uint32_t& at = place[static_cast<std::size_t>(mesh.triangles[t + n])];
+                if (at == kNone) continue;
+                ring_[at] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 1) % 3]);
+                behind_[at++] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 2) % 3]);
+            }
+        }
+    }
+
+    void set_normals(const Run& run, const Places& from) {
+        for (std::size_t n = run.begin; n < run.end; ++n) {
+            const Lanes& own = from[vertex_[n]];
+            const std::size_t begin = run.first + (n - run.begin) * run.ring;
+            Lanes sum{};
+            for (std::size_t m = begin; m < begin + run.ring; ++m) {
+                sum += cross(from[ring_[m]] - own, from[behind_[m]] - own);
+            }
+            const float length = std::sqrt(dot(sum, sum));
+            const float share = length > 0 ? 1 / (length * steep(sum[axis_[n]] / length)) : 0;
+            normal_[n] = share * sum;
+        }
+    }
+
+    // To where the plane through the smoothed place, with the vertex's normal, meets the edge. `known` is the number of
+    // neighbours, or 0.
+    template <std::size_t known>
+    void move(const Run& run, const Places& from, Places& to, float factor) const {
+        const std::size_t ring = known == 0 ? run.ring : known;
+        const float share = 1 / static_cast<float>(ring);
+        const std::uint32_t* neighbour = ring_.data() + run.first;
+        for (std::size_t n = run.begin; n < run.end; ++n, neighbour += ring) {
+            Lanes sum{};
+            for (std::size_t m = 0; m < ring; ++m) sum += from[neighbour[m]];
+            const Lanes& own = from[vertex_[n]];
+            const float at = own[axis_[n]];
+            to[vertex_[n]][axis_[n]] = kept(at, at + factor * dot(normal_[n], share * sum - own));
+        }
+    }
+
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+    std::vector<std::uint32_t> vertex_;
+    std::vector<std::uint8_t> axis_;
+    std::vector<Run> runs_;
+    std::vector<std::size_t> blocks_;     // where each block's runs begin
+    Array<std::uint32_t> ring_, behind_;  // the next and the last corner of each triangle around a vertex
+    std::vector<Lanes> normal_;           // by its own component along the axis, which is at least kSteepest
+};
+
+// The vertices of the curves in which three labels and more meet: middles of faces, each between those of its two
+// cells, and middles of cells.
+class CurveVertices {
+  public:
+    explicit CurveVertices(const LabelMesh& mesh) {
+        std::vector<std::array<std::uint32_t, 2>> pairs;
+        for (std::size_t n = 0; n < mesh.curves.size(); n += 2) {
+            const auto face = static_cast<std::uint32_t>(mesh.curves[n]),
+                       cell = static_cast<std::uint32_t>(mesh.curves[n + 1]);
+            pairs.push_back({face, cell});
+            if (!(mesh.elements[cell] & kStays)) pairs.push_back({cell, face});
+        }
+        std::sort(pairs.begin(), pairs.end());
+        for (const auto& [own, neighbour] : pairs) {
+            if (vertex_.empty() || vertex_.back() != own) {
+                vertex_.push_back(own);
+                element_.push_back(mesh.elements[own]);
+                start_.push_back(neighbours_.size());
+            }
+            neighbours_.push_back(neighbour);
+        }
+        start_.push_back(neighbours_.size());
+    }
+
+    void step(const Places& from, Places& to, float factor, int threads) const {
+        parallel_for(threads, (vertex_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
+            const std::size_t end = std::min(vertex_.size(), (block + 1) * kBlock);
+            for (std::size_t n = block * kBlock; n < end; ++n) move(n, from, to, factor);
+        });
+    }
+
+  private:
+    void move(std::size_t n, const Places& from, Places& to, float factor) const {
+        const Lanes& own = from[vertex_[n]];
+        const std::size_t begin = start_[n], end = start_[n + 1];
+        Lanes sum{};
+        for (std::size_t m = begin; m < end; ++m) sum += from[neighbours_[m]];
+        Lanes pull = (1 / static_cast<float>(end - begin)) * sum - own;
+        if (element_[n] != kCell && end - begin == 2) {
+            // Along the curve, back to the face.
+            const std::size_t across = element_[n] == 6 ? 0 : element_[n] == 5 ? 1 : 2;
+            const Lanes along = from[neighbours_[begin + 1]] - from[neighbours_[begin]];
+            const float length = std::sqrt(dot(along, along));
+            if (length > 0) pull = pull - (pull[across] / (length * steep(along[across] / length))) * along;
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (element_[n] >> axis & 1) to[vertex_[n]][axis] = kept(own[axis], own[axis] + factor * pull[axis]);
+        }
+    }
+
+    std::vector<std::uint32_t> vertex_, neighbours_;
+    std::vector<Element> element_;
+    std::vector<std::size_t> start_;
+};
+
+}  // namespace
+
+void smooth(LabelMesh& mesh, int rounds, int threads) {
+    if (rounds <= 0) return;
+    Places from(mesh.elements.size());
+    for (std::size_t n = 0; n < from.size(); ++n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) from[n][axis] = mesh.vertices[3 * n + axis];
+    }
+    Places to = from;
+    EdgeVertices edges(mesh);
+    const CurveVertices curves(mesh);
+    for (int step = 0; step < rounds; ++step) {
+        const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
+        edges.step(from, to, factor, step == 0 || step % kSamePace == kSamePace / 2, threads);
+        curves.step(from, to, factor, threads);
+        std::swap(from, to);
+    }
+    for (std::size_t n = 0; n < from.size(); ++n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) mesh.vertices[3 * n + axis] = from[n][axis];
+    }
+}
+
+}  // namespace isocore::labels

@@ -1,0 +1,139 @@
+// solids.cpp - A counting sort of triangles by label, then one label's triangles with vertices of their own.
+#include "labels/solids.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace isocore::labels {
+namespace {
+
+// Gives every vertex of a solid's triangles its number there: in the order in which triangles first name them.
+void number_vertices(const LabelMesh& mesh, Solid& solid) {
+    const auto [least, most] = std::minmax_element(solid.triangles.begin(), solid.triangles.end());
+    if (least == solid.triangles.end()) return;
+    const std::int32_t first = *least;
+    std::vector<std::int32_t> number(static_cast<std::size_t>(*most - first) + 1, -1);
+    for (std::int32_t& corner : solid.triangles) {
+        std::int32_t& own = number[static_cast<std::size_t>(corner - first)];
+        if (own < 0) {
+            own = static_cast<std::int32_t>(solid.shared.size());
+            solid.shared.push_back(corner);
+        }
+        corner = own;
+    }
+    solid.vertices.resize(3 * solid.shared.size());
+    for (std::size_t n = 0; n < solid.shared.size(); ++n) {
+        std::copy_n(mesh.vertices.data() + 3 * static_cast<std::size_t>(solid.shared[n]), 3,
+                    solid.vertices.data() + 3 * n);
+    }
+}
+
+// The triangles that one label has around one cell's middle: all in one cell, so that there are never many.
+class Fans {
+  public:
+    Fans(std::span<std::int32_t> corners, std::int32_t middle) : corners_(corners), middle_(middle) {
+        fan_.resize(corners.size() / 3);
+        std::iota(fan_.begin(), fan_.end(), std::size_t{0});
+        for (std::size_t t = 0; t < fan_.size(); ++t) {
+            for (std::size_t u = 0; u < t; ++u) {
+                if (share_a_side(t, u)) join(t, u);
+            }
+        }
+    }
+
+    // Names a copy of the middle in all triangles of every fan but the first; `copy` makes one and returns its number.
+    template <class Copy>
+    void separate(const Copy& copy) {
+        for (std::size_t t = 1; t < fan_.size(); ++t) {
+            if (fan_[t] != t) continue;
+            const std::int32_t own = copy();
+            for (std::size_t u = t; u < fan_.size(); ++u) {
+                if (fan_[u] == t) std::replace(&corners_[3 * u], &corners_[3 * u] + 3, middle_, own);
+            }
+        }
+    }
+
+  private:
+    bool share_a_side(std::size_t t, std::size_t u) const {
+        for (std::size_t n = 0; n < 3; ++n) {
+            const std::int32_t corner = corners_[3 * t + n];
+            const auto other = corners_.subspan(3 * u, 3);
+            if (corner != middle_ && std::find(other.begin(), other.end(), corner) != other.end()) return true;
+        }
+        return false;
+    }
+    void join(std::size_t t, std::size_t u) {
+        const std::size_t from = std::max(fan_[t], fan_[u]), to = std::min(fan_[t], fan_[u]);
+        std::replace(fan_.begin(), fan_.end(), from, to);
+    }
+
+    std::span<std::int32_t> corners_;
+    std::int32_t middle_;
+    std::vector<std::size_t> fan_;  // of each triangle: the first triangle of its fan
+};
+
+// Which of a triangle's vertices is the middle of a cell, or -1.
+std::int32_t middle_of(const LabelMesh& mesh, const Solid& solid, std::size_t triangle) {
+    for (std::size_t n = 0; n < 3; ++n) {
+        const std::int32_t corner = solid.triangles[3 * triangle + n];
+        const auto shared = static_cast<std::size_t>(solid.shared[static_cast<std::size_t>(corner)]);
+        if (free_axes(mesh.elements[shared]) == kCell) return corner;
+    }
+    return -1;
+}
+
+// A cone's triangles follow one another, since a cell draws them all.
+void separate_fans(const LabelMesh& mesh, Solid& solid) {
+    const std::size_t count = solid.triangles.size() / 3;
+    for (std::size_t begin = 0; begin < count;) {
+        const std::int32_t middle = middle_of(mesh, solid, begin);
+        std::size_t end = begin + 1;
+        if (middle >= 0) {
+            while (end < count && middle_of(mesh, solid, end) == middle) ++end;
+            Fans fans({solid.triangles.data() + 3 * begin, 3 * (end - begin)}, middle);
+            fans.separate([&] {
+                const std::size_t own = solid.shared.size(), from = 3 * static_cast<std::size_t>(middle);
+                const std::array<float, 3> place{solid.vertices[from], solid.vertices[from + 1],
+                                                 solid.vertices[from + 2]};
+                solid.vertices.insert(solid.vertices.end(), place.begin(), place.end());
+                solid.shared.push_back(solid.shared[static_cast<std::size_t>(middle)]);
+                return static_cast<std::int32_t>(own);
+            });
+        }
+        begin = end;
+    }
+}
+
+}  // namespace
+
+Solids::Solids(const LabelMesh& mesh, std::size_t ranks) : sided_(mesh.sides.size()), starts_(ranks + 2, 0) {
+    for (const std::uint32_t rank : mesh.sides) ++starts_[rank + 2];
+    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+    for (std::size_t n = 0; n < mesh.sides.size(); ++n) {
+        sided_[starts_[mesh.sides[n] + 1]++] = static_cast<std::uint32_t>(n);
+    }
+    starts_.pop_back();
+}
+
+Solid Solids::solid(const LabelMesh& mesh, std::size_t rank) const {
+    if (rank + 1 >= starts_.size()) throw std::out_of_range("there is no label of this rank");
+    Solid solid;
+    solid.triangles.resize(3 * triangles_of(rank));
+    for (std::size_t n = starts_[rank], out = 0; n < starts_[rank + 1]; ++n, out += 3) {
+        const std::int32_t* corners = mesh.triangles.data() + 3 * static_cast<std::size_t>(sided_[n] >> 1);
+        const bool ahead = (sided_[n] & 1) != 0;
+        solid.triangles[out] = corners[0];
+        solid.triangles[out + 1] = corners[ahead ? 2 : 1];
+        solid.triangles[out + 2] = corners[ahead ? 1 : 2];
+    }
+    number_vertices(mesh, solid);
+    separate_fans(mesh, solid);
+    return solid;
+}
+
+}  // namespace isocore::labels

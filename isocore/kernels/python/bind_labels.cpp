@@ -1,0 +1,112 @@
+// bind_labels.cpp - Python's view of kernels/labels: which labels a volume holds, and the mesh that they share.
+#include <algorithm>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "labels/census.hpp"
+#include "labels/label_mesh.hpp"
+#include "labels/smooth.hpp"
+#include "labels/solids.hpp"
+#include "python/arrays.hpp"
+#include "python/bindings.hpp"
+#include "python/named_tuple.hpp"
+#include "samples/sample_types.hpp"
+
+namespace isocore::python {
+namespace {
+
+template <class From>
+nb::object copied(const From& values) {
+    using T = typename From::value_type;
+    return to_numpy(Array<T>(values.begin(), values.end()));
+}
+
+// The mesh and its lists of triangles by label. Python asks for one label at a time, from any thread.
+class LabelSurfaces {
+  public:
+    LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks) : mesh_(std::move(mesh)), solids_(mesh_, ranks) {}
+
+    std::size_t vertices() const { return mesh_.elements.size(); }
+    std::size_t triangles() const { return mesh_.sides.size() / 2; }
+
+    void smooth(int rounds, int threads) {
+        const nb::gil_scoped_release unlocked;
+        const std::lock_guard<std::mutex> alone(one_at_a_time_);
+        labels::smooth(mesh_, rounds, threads);
+    }
+
+    nb::object solid(std::size_t rank, const NamedTuple& label_solid) {
+        labels::Solid solid;
+        {
+            const nb::gil_scoped_release unlocked;
+            const std::lock_guard<std::mutex> alone(one_at_a_time_);
+            solid = solids_.solid(mesh_, rank);
+        }
+        return label_solid(to_numpy(std::move(solid.vertices), 3), to_numpy(std::move(solid.triangles), 3),
+                           to_numpy(std::move(solid.shared)));
+    }
+
+    // All that is shared, copied: for tests, and for whoever wants the whole mesh.
+    nb::object shared(const NamedTuple& label_mesh) const {
+        auto copy = mesh_;
+        return label_mesh(to_numpy(std::move(copy.vertices), 3), to_numpy(std::move(copy.elements)),
+                          to_numpy(std::move(copy.triangles), 3), to_numpy(std::move(copy.sides), 2));
+    }
+
+  private:
+    labels::LabelMesh mesh_;
+    labels::Solids solids_;
+    std::mutex one_at_a_time_;
+};
+
+template <class Sample>
+void bind_sample(nb::module_& module, const NamedTuple& label_census) {
+    using nb::arg;
+    module.def(
+        "label_census",
+        [=](const Vector<Sample>& samples, std::size_t most) {
+            labels::Census census;
+            {
+                const nb::gil_scoped_release unlocked;
+                census = labels::take_census(samples.data(), samples.shape(0), most);
+            }
+            return label_census(copied(census.values), copied(census.counts), census.not_a_number, census.too_many,
+                                census.not_whole);
+        },
+        arg("samples").noconvert(), arg("most"));
+    module.def(
+        "label_surfaces",
+        [](const VolumeArray<Sample>& samples, const Vector<double>& values, const Vector<std::uint32_t>& ranks,
+           int threads) {
+            if (values.shape(0) != ranks.shape(0)) throw std::invalid_argument("values and ranks differ in number");
+            const nb::gil_scoped_release unlocked;
+            const std::span all(ranks.data(), ranks.shape(0));
+            const std::uint32_t highest = all.empty() ? 0 : *std::max_element(all.begin(), all.end());
+            const labels::RankTable table({values.data(), values.shape(0)}, all);
+            return new LabelSurfaces(labels::extract(grid_view(samples), table, threads), std::size_t{highest} + 1);
+        },
+        arg("samples").noconvert(), arg("values").noconvert(), arg("ranks").noconvert(), arg("threads") = 1,
+        nb::rv_policy::take_ownership);
+}
+
+}  // namespace
+
+void bind_labels(nb::module_& module) {
+    using nb::arg;
+    const NamedTuple label_census(module, "LabelCensus", {"values", "counts", "not_a_number", "too_many", "not_whole"});
+    const NamedTuple label_solid(module, "LabelSolid", {"vertices", "triangles", "shared"});
+    const NamedTuple label_mesh(module, "LabelMesh", {"vertices", "elements", "triangles", "sides"});
+    nb::class_<LabelSurfaces>(module, "LabelSurfaces")
+        .def_prop_ro("vertices", &LabelSurfaces::vertices)
+        .def_prop_ro("triangles", &LabelSurfaces::triangles)
+        .def("smooth", &LabelSurfaces::smooth, arg("rounds"), arg("threads") = 1)
+        .def(
+            "solid", [=](LabelSurfaces& all, std::size_t rank) { return all.solid(rank, label_solid); }, arg("rank"))
+        .def("shared", [=](const LabelSurfaces& all) { return all.shared(label_mesh); });
+    for_each_sample_type([&]<class Sample>() { bind_sample<Sample>(module, label_census); });
+}
+
+}  // namespace isocore::python
