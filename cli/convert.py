@@ -114,6 +114,8 @@ def _format(options: ConvertOptions) -> Format:
 
 def _requirements(text: str | None) -> tuple[str, ...]:
     names = tuple(name for name in (text or "").replace(",", " ").split())
+    if text is not None and not names:
+        raise click.UsageError(f"--require: names nothing to require; choose of {', '.join(REQUIREMENTS)}")
     for name in names:
         if name not in REQUIREMENTS:
             raise click.UsageError(f"--require {name}: is none of {', '.join(REQUIREMENTS)}")

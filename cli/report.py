@@ -52,7 +52,7 @@ def report(
     """
     from isocore.errors import IsocoreError
     from isocore.report import load_report, merged, renderer_for, save_report
-    from isocore.report.compare import parse_limit
+    from isocore.report.limits import check_limits, parse_limit
 
     from .console import say_table
 
@@ -61,20 +61,26 @@ def report(
         renderer_for(target)
     if compare and len(reports) != 2:
         raise click.UsageError(f"--compare needs two reports, the earlier one first, not {len(reports)}")
+    if compare and targets:
+        raise click.UsageError("--compare shows a table and writes no --to FILE; leave one of them out")
     if limits and not compare:
         raise click.UsageError("--fail-if goes with --compare")
     batches = [load_report(path) for path in reports]
     if compare:
-        from isocore.report.compare import HEADINGS, broken_limits, comparison_rows
+        from isocore.report.compare import HEADINGS, compared, comparison_rows, faults
 
         from .console import screen_width
         from .table import Column, set_table
 
+        check_limits(parsed, *batches)
+        found = compared(batches[0], batches[1])
         columns = [Column(name, *set_) for name, set_ in zip(HEADINGS, _COMPARED, strict=True)]
-        click.echo("\n".join(set_table(columns, comparison_rows(*batches), screen_width(sys.stdout))))
-        broken = broken_limits(batches[0], batches[1], parsed)
+        click.echo("\n".join(set_table(columns, comparison_rows(found), screen_width(sys.stdout))))
+        broken = faults(found, parsed)
         for line in broken:
             say(f"isocore: {line}")
+        if found.share_nothing and not parsed:
+            say("isocore: warning: the reports share no output, so nothing was compared")
         context.exit(3 if broken else 0)
     batch = merged(batches)
     unwritten = False

@@ -21,8 +21,8 @@ class Measurements:
     nonmanifold_vertices: vertices whose triangles form neither one ring nor one fan.
     misoriented_edges: edges whose two triangles turn against each other.
     euler: used vertices - edges + triangles.
-    watertight: every edge has two triangles that turn the same way.
-    manifold: no non-manifold edge and no non-manifold vertex.
+    watertight: every edge has two triangles that turn the same way; None where there is none, as in an empty surface.
+    manifold: no non-manifold edge and no non-manifold vertex; None where there is no edge.
     volume: enclosed, positive when normals point outside; None unless watertight.
     bounds: lowest and highest corner of the box around all vertices; None where there is none.
     degenerate: triangles with a repeated corner or an area of exactly zero.
@@ -36,8 +36,8 @@ class Measurements:
     nonmanifold_vertices: int
     misoriented_edges: int
     euler: int
-    watertight: bool
-    manifold: bool
+    watertight: bool | None
+    manifold: bool | None
     area: float
     volume: float | None
     bounds: tuple[tuple[float, float, float], tuple[float, float, float]] | None
@@ -51,6 +51,7 @@ def measure(surface: Surface, threads: int = 1) -> Measurements:
     Raises ValueError if a triangle names a vertex that does not exist.
     """
     measured = _kernels.measure(surface.vertices, surface.triangles, threads)
+    has_edges = measured.components > 0
     watertight = measured.boundary_edges == measured.nonmanifold_edges == measured.misoriented_edges == 0
     return Measurements(
         triangles=len(surface.triangles),
@@ -61,10 +62,10 @@ def measure(surface: Surface, threads: int = 1) -> Measurements:
         nonmanifold_vertices=measured.nonmanifold_vertices,
         misoriented_edges=measured.misoriented_edges,
         euler=measured.euler,
-        watertight=watertight,
-        manifold=measured.nonmanifold_edges == measured.nonmanifold_vertices == 0,
+        watertight=watertight if has_edges else None,
+        manifold=measured.nonmanifold_edges == measured.nonmanifold_vertices == 0 if has_edges else None,
         area=measured.area,
-        volume=measured.volume if watertight else None,
+        volume=measured.volume if has_edges and watertight else None,
         bounds=(measured.bounds[:3], measured.bounds[3:]) if len(surface.vertices) else None,
         degenerate=measured.degenerate,
         unit=surface.unit,

@@ -13,16 +13,33 @@ REQUIREMENTS = ("watertight", "manifold", "nonempty")
 def missed(surface: Measurements, require: tuple[str, ...], max_triangles: int | None) -> tuple[str, ...]:
     """The requirements that this surface does not meet, each with the count that says so.
 
+    Of an empty surface nothing can be said, so it meets neither `watertight` nor `manifold`.
+
     require: names out of REQUIREMENTS; max_triangles: a further one.
     """
     misses = []
     if "watertight" in require and not surface.watertight:
-        misses.append(f"watertight: {surface.boundary_edges:,} open edges")
-    edges, vertices = surface.nonmanifold_edges, surface.nonmanifold_vertices
-    if "manifold" in require and (edges or vertices):
-        misses.append(f"manifold: {edges:,} edges and {vertices:,} vertices are not")
+        misses.append(f"watertight: {_leaks(surface) or _nothing(surface)}")
+    if "manifold" in require and not surface.manifold:
+        edges, vertices = surface.nonmanifold_edges, surface.nonmanifold_vertices
+        counts = f"{edges:,} edges and {vertices:,} vertices are not"
+        misses.append(f"manifold: {counts if edges or vertices else _nothing(surface)}")
     if "nonempty" in require and not surface.triangles:
         misses.append("nonempty: no triangles")
     if max_triangles is not None and surface.triangles > max_triangles:
         misses.append(f"max-triangles: {surface.triangles:,} of at most {max_triangles:,}")
     return tuple(misses)
+
+
+def _leaks(surface: Measurements) -> str:
+    """Why a surface is not watertight, in numbers of edges."""
+    kinds = (
+        (surface.boundary_edges, "open edges"),
+        (surface.nonmanifold_edges, "edges of more than two triangles"),
+        (surface.misoriented_edges, "edges whose triangles turn against each other"),
+    )
+    return ", ".join(f"{edges:,} {what}" for edges, what in kinds if edges)
+
+
+def _nothing(surface: Measurements) -> str:
+    return "all triangles are degenerate" if surface.triangles else "the surface is empty"

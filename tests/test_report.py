@@ -12,10 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from isocore.cli.report import report as report_command
 
-from isocore.errors import InputError, OptionError
+from isocore.errors import InputError
 from isocore.report import (
     BatchReport,
     RunReport,
@@ -27,7 +25,6 @@ from isocore.report import (
     run_from_dict,
     save_report,
 )
-from isocore.report.compare import broken_limits, parse_limit
 from isocore.report.render_junit import render_junit
 
 NASTY = 'a "quoted", <b>&amp;</b> | name\x07\n;=cmd'
@@ -57,7 +54,7 @@ def batch() -> BatchReport:
             run_of(output="out/b.ply", missed=("watertight: 3 open edges",), warnings=("half of it is missing",)),
             run_from_dict(BROKEN),
             run_of(output="out/d.ply", status="skipped", message="up to date"),
-            run_of(output="out/e.ply", status="empty", surface={"triangles": 0}, **FIELD),
+            run_of(output="out/e.ply", status="empty", message="no surface", surface={"triangles": 0}, **FIELD),
         ),
         arguments=("convert", "in"),
         seconds=2.5,
@@ -99,13 +96,13 @@ def test_jsonl_has_a_record_per_line(batch: BatchReport) -> None:
 
 
 def test_junit_counts_errors_and_failures(batch: BatchReport) -> None:
-    """A missed requirement is a failure, a failed run an error, an up-to-date output skipped."""
+    """A missed requirement is a failure, a failed run an error, an up-to-date output and an empty one skipped."""
     root = ElementTree.fromstring(renderer_for(Path("x.xml"))(batch))
     (suite,) = root
     counts = {key: suite.get(key) for key in ("tests", "failures", "errors", "skipped")}
-    assert counts == {"tests": "5", "failures": "1", "errors": "1", "skipped": "1"}
+    assert counts == {"tests": "5", "failures": "1", "errors": "1", "skipped": "2"}
     cases = suite.findall("testcase")
-    assert [child.tag for case in cases for child in case] == ["failure", "system-err", "error", "skipped"]
+    assert [child.tag for case in cases for child in case] == ["failure", "system-err", "error", "skipped", "skipped"]
     assert len([case for case in cases if case.get("name") and case.get("classname") and case.get("time")]) == 5
 
 
@@ -162,7 +159,8 @@ def test_bench_json_is_a_list_of_named_numbers(batch: BatchReport) -> None:
 def test_github_sees_failures_and_warnings(batch: BatchReport) -> None:
     """One line each, with line ends and colons escaped."""
     lines = github_annotations(batch)
-    assert [line.split(" ")[0] for line in lines] == ["::error", "::warning", "::error"]
+    assert [line.split(" ")[0] for line in lines] == ["::error", "::warning", "::error", "::warning"]
+    assert lines[-1] == "::warning file=in/a.nii,title=isocore empty::out/e.ply: no surface"
     assert all("\n" not in line for line in lines)
 
 
@@ -178,38 +176,3 @@ def test_of_two_runs_of_one_output_the_later_stays(batch: BatchReport) -> None:
     """Merging a resumed run into the first."""
     both = merged([batch, BatchReport((run_of(output="out/b.ply"),), seconds=1.0)])
     assert len(both.outputs) == 5 and not both.outputs[1].missed and both.seconds == 3.5
-
-
-@pytest.mark.parametrize(
-    ("limit", "broken"),
-    [
-        ("triangles>+2%", True),
-        ("triangles>+20%", False),
-        ("seconds>+20%", False),
-        ("triangles>105", True),
-        ("surface.vertices<52", False),
-        ("surface.nothing>0", False),
-    ],
-)
-def test_a_limit_breaks_where_it_should(limit: str, broken: bool) -> None:
-    """Ten per cent more triangles in the same time."""
-    new = run_of(surface={"triangles": 110, "vertices": 57})
-    assert bool(broken_limits(BatchReport((run_of(),)), BatchReport((new,)), [parse_limit(limit)])) is broken
-
-
-def test_nonsense_is_no_limit() -> None:
-    """Rather than never breaking."""
-    for text in ("triangles", "triangles>", "triangles=3", "triangles>+2 percent"):
-        with pytest.raises(OptionError):
-            parse_limit(text)
-
-
-def test_comparing_exits_with_3_where_a_limit_is_broken(tmp_path: Path) -> None:
-    """What fails now and did not then needs no limit."""
-    old, new = tmp_path / "old.json", tmp_path / "new.json"
-    save_report(BatchReport((run_of(),)), old)
-    save_report(BatchReport((run_of(status="failed", message="in/a.nii: broke"),)), new)
-    runner = CliRunner()
-    assert runner.invoke(report_command, ["--compare", str(old), str(old), "--fail-if", "seconds>+1%"]).exit_code == 0
-    assert runner.invoke(report_command, ["--compare", str(old), str(new)]).exit_code == 3
-    assert runner.invoke(report_command, ["--compare", str(old)]).exit_code == 2

@@ -20,7 +20,8 @@ from isocore.batches.stamps import reason_to_run, stamp_path
 from isocore.errors import InputError
 from isocore.job import Job, Target
 from isocore.report import RENDERERS, BatchReport, load_report, merged, run_as_dict, run_from_dict, save_report
-from isocore.report.compare import broken_limits, comparison_rows, parse_limit
+from isocore.report.compare import compared, comparison_rows, faults
+from isocore.report.limits import parse_limit
 from isocore.report.schema import parsed
 
 IDENTITY: dict[str, Any] = {"source": "a.nii", "output": "b.ply", "status": "done"}
@@ -54,8 +55,8 @@ def used(batch: BatchReport, folder: Path) -> None:
     for suffix in RENDERERS:
         save_report(batch, folder / f"y{suffix}")
     save_report(batch, folder / "bench.json")
-    comparison_rows(batch, batch)
-    broken_limits(batch, batch, LIMITS)
+    comparison_rows(compared(batch, batch))
+    faults(compared(batch, batch), LIMITS)
     merged([batch, batch])
     again = load_report(folder / "y.json")
     assert [run_as_dict(run) for run in again.outputs] == [run_as_dict(run) for run in batch.outputs]

@@ -70,6 +70,11 @@ class RunReport:
         """Of the surface; 0 where there is none."""
         return 0 if self.surface is None else self.surface.triangles or 0
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is a surface and it has no triangles; also where an earlier run made it."""
+        return self.surface is not None and self.surface.triangles == 0
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BatchReport:

@@ -6,13 +6,16 @@ from isocore.report.record import BatchReport
 
 
 def github_annotations(batch: BatchReport) -> list[str]:
-    """One workflow command per failure, missed requirement and warning."""
+    """One workflow command per failure, missed requirement, empty surface and warning."""
     lines = []
     for run in batch.outputs:
         place = f"file={_property(run.source)}"
         if run.status == "failed":
             lines.append(f"::error {place},title=isocore::{_data(run.message)}")
         lines += [f"::error {place},title=isocore missed::{_data(f'{run.output}: {miss}')}" for miss in run.missed]
+        if run.is_empty:
+            why = run.message if run.status == "empty" else "the surface is empty"
+            lines.append(f"::warning {place},title=isocore empty::{_data(f'{run.output}: {why}')}")
         lines += [f"::warning {place},title=isocore::{_data(warning)}" for warning in run.warnings]
     return lines
 

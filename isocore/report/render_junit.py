@@ -1,4 +1,7 @@
-"""The report as JUnit XML: a test case per output, missed requirements as failures, everything else as errors."""
+"""The report as JUnit XML: a test case per output, missed requirements as failures, everything else as errors.
+
+An output that is up to date and one that is empty are skipped: nothing about them was tested.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ def render_junit(batch: BatchReport) -> str:
         "failures": str(sum(bool(run.missed) and run.status != "failed" for run in runs)),
         "errors": str(sum(run.status == "failed" for run in runs)),
     }
-    skipped = {"skipped": str(sum(run.status == "skipped" and not run.missed for run in runs))}
+    skipped = {"skipped": str(sum(_is_skipped(run) for run in runs))}
     time = {"time": f"{batch.seconds:.3f}"}
     suites = Element("testsuites", {"name": "isocore"} | totals | time)
     suite = SubElement(suites, "testsuite", {"name": "isocore convert"} | totals | skipped | time)
@@ -46,13 +49,17 @@ def _names(run: RunReport) -> dict[str, str]:
     return {"name": _clean(run.output), "classname": _clean(run.source), "time": f"{seconds:.3f}"}
 
 
+def _is_skipped(run: RunReport) -> bool:
+    return not run.missed and (run.status in ("empty", "skipped"))
+
+
 def _tell(case: Element, run: RunReport) -> None:
     """What came of the run, on the line of its case."""
     if run.status == "failed":
         SubElement(case, "error", type="failed", message=_clean(run.message))
     elif run.missed:
         SubElement(case, "failure", type="missed", message=_clean("; ".join(run.missed)))
-    elif run.status == "skipped":
+    elif _is_skipped(run):
         SubElement(case, "skipped", message=_clean(run.message))
     if run.warnings:
         SubElement(case, "system-err").text = _clean("\n".join(run.warnings))

@@ -56,7 +56,7 @@ def summary_row(run: RunReport, name: str) -> tuple[str, ...]:
 
 def watertight(surface: Measurements) -> str:
     """Whether a surface is closed, in a word; "-" for one without triangles, of which it cannot be said."""
-    if not surface.triangles:
+    if not surface.triangles or surface.watertight is None:
         return "-"
     return "yes" if surface.watertight else "no"
 

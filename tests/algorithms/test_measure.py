@@ -182,10 +182,18 @@ def test_the_box_holds_unused_vertices_and_skips_what_is_not_a_number():
 
 
 def test_an_empty_surface_measures_nothing():
-    """No triangles are no error; there is nothing open, and no box."""
+    """No triangles are no error; there is no box, nothing open and nothing that could be closed."""
     measured = measure(shapes_mesh.empty())
     assert astuple(measured)[:8] == (0,) * 8
-    assert (measured.area, measured.volume, measured.bounds) == (0, 0, None)
+    assert (measured.area, measured.bounds) == (0, None)
+    assert (measured.watertight, measured.manifold, measured.volume) == (None, None, None)
+
+
+def test_triangles_without_an_edge_close_nothing():
+    """A repeated corner takes part in nothing: two such triangles are not watertight either."""
+    measured = measure(shapes_mesh.surface([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 1], [2, 2, 2]]))
+    assert (measured.triangles, measured.degenerate) == (2, 2)
+    assert (measured.watertight, measured.manifold, measured.volume) == (None, None, None)
 
 
 @pytest.mark.parametrize("kind", ["float32", "float64"])

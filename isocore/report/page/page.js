@@ -9,6 +9,9 @@ const whole = (value) => (isNumber(value) ? value.toLocaleString("en") : "");
 const short = (digits) => (value) => (isNumber(value) ? value.toFixed(digits) : "");
 const plain = (value) => (isNumber(value) ? String(Number(value.toPrecision(6))) : value ?? "");
 const fileName = (path) => path.split(/[\\/]/).pop();
+const isEmpty = (run) => run.surface != null && !run.surface.triangles;
+const closed = (run) =>
+  run.surface == null ? "" : isEmpty(run) || run.surface.watertight == null ? "-" : run.surface.watertight ? "yes" : "no";
 const ownSeconds = (run) => (run.surface && isNumber(run.seconds.extract) ? (run.seconds.prepare || 0) + run.seconds.extract : null);
 
 function make(tag, text = "", name = "") {
@@ -27,7 +30,7 @@ const columns = [
   { title: "ratio", value: (run) => dig(run, "ratio.triangles"), show: short(2), number: true },
   { title: "seconds", value: ownSeconds, show: short(3), number: true },
   { title: "ref. s", value: (run) => dig(run, "reference.seconds"), show: short(3), number: true },
-  { title: "closed", value: (run) => dig(run, "surface.watertight"), show: (v) => (v == null ? "" : v ? "yes" : "no") },
+  { title: "closed", value: closed, show: String },
 ];
 
 function summarise() {
@@ -37,9 +40,12 @@ function summarise() {
   at("#totals").textContent =
     `${parts.join(", ") || "nothing done"} — ${whole(totals.triangles)} triangles in ${totals.seconds.toFixed(1)} s`;
   const { tool, host } = report;
-  at("#made").textContent =
-    `${tool.name} ${tool.version} (${tool.kernels}), ${host.system} ${host.machine}, ${host.cpus} processors — ` +
-    `isocore ${report.arguments.join(" ")}`;
+  const known = (...texts) => texts.filter((text) => text != null).join(" ");
+  at("#made").textContent = [
+    known(tool.name, tool.version, tool.kernels && `(${tool.kernels}),`),
+    known(host.system, host.machine && `${host.machine},`, host.cpus, host.cpus && "processors"),
+    `— isocore ${report.arguments.join(" ")}`,
+  ].join(" ");
   const list = at("#attention ul");
   const tell = (run, text, name) => {
     const item = make("li", text, name);
@@ -68,7 +74,7 @@ function fillTable() {
     for (const column of columns) {
       const cell = make("td", column.show(column.value(run)), column.number ? "number" : "");
       if (column.title === "status") {
-        cell.classList.add(run.status === "failed" || run.missed.length ? "bad" : run.warnings.length ? "warn" : "good");
+        cell.classList.add(run.status === "failed" || run.missed.length ? "bad" : isEmpty(run) || run.warnings.length ? "warn" : "good");
       }
       row.append(cell);
     }
@@ -130,7 +136,7 @@ function drawHistogram(run) {
   const place = at("#histogram");
   place.replaceChildren();
   const spread = run.histogram;
-  if (!spread || !spread.counts.length) {
+  if (!spread?.counts?.length) {
     place.append(make("p", "No samples were counted.", "quiet"));
     return;
   }
