@@ -230,14 +230,12 @@ class GridIndex:
 # extrema_graph: the cells that the rival of 1995 registers
 def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes) -> _Int32: ...
 
-<<<<<<< HEAD
 # joining
 class JoinedPoints(NamedTuple):
     with_: _Int32  # (n,) the lowest point that each is joined with, itself where that is none
     joined: int  # points that are joined with another
 
 def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...
-=======
 class LabelCensus(NamedTuple):
     values: _Float64  # ascending
     counts: npt.NDArray[np.uint64]  # samples of each
@@ -270,4 +268,3 @@ class LabelSurfaces:
 def label_surfaces(
     samples: _Samples, values: _Float64, ranks: npt.NDArray[np.uint32], threads: int = 1
 ) -> LabelSurfaces: ...
->>>>>>> eee856e (labels: Surfaces of all labels in one pass, smoothed inside the grid)
