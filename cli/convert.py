@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import sys
+import stat
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -16,6 +15,7 @@ from isocore.requirements import REQUIREMENTS
 
 from .convert_options import ConvertOptions, convert_options
 from .groups import GroupedCommand
+from .lists import listed
 from .options import default_threads
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def exit_code(batch: BatchReport) -> int:
 
 def planned_jobs(options: ConvertOptions) -> list[Job]:
     """Everything that can be refused without opening a file, then one job per input and volume."""
-    names = [*options.inputs, *_listed(options.files_from)]
+    names = [*options.inputs, *listed(options.files_from, null=options.null)]
     if not names:
         raise click.UsageError("name an INPUT, or a list of them with --files-from")
     format_ = _format(options)
@@ -76,23 +76,16 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     _check_places(options)
     naming = Naming(output=options.output, output_dir=options.output_dir, template=options.name)
     choices = distinct(choice for asked in options.isovalues for choice in asked)
-    jobs = plan(find_inputs(names), choices, pattern, naming, volumes=options.reading.volume)
+    written = [("--report", path) for path in options.reports]
+    more = (("--depfile", options.depfile), ("--ambiguities", options.ambiguities))
+    written += [(option, path) for option, path in more if path is not None]
+    lists = [("--files-from", path) for path in (options.files_from,) if path not in (None, Path("-"))]
+    inputs = find_inputs(names)
+    jobs = plan(inputs, choices, pattern, naming, volumes=options.reading.volume, written=written, read=lists)
     if options.ambiguities and (len(jobs) != 1 or len(jobs[0].targets) != 1):
         raise click.UsageError(f"--ambiguities {options.ambiguities}: is one file; give one input and one isovalue")
     threads = options.threads or max(1, default_threads() // min(options.at_once, len(jobs)))
     return [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
-
-
-def _listed(path: Path | None) -> list[Path]:
-    if path is None:
-        return []
-    try:
-        data = sys.stdin.buffer.read() if path == Path("-") else path.read_bytes()
-    except OSError as error:
-        raise click.UsageError(f"--files-from {path}: cannot be read ({error})") from error
-    if b"\0" in data:
-        raise click.UsageError(f"--files-from {path}: holds NUL bytes; write one name a line, as UTF-8")
-    return [Path(line) for line in os.fsdecode(data).splitlines() if line.strip()]
 
 
 def _format(options: ConvertOptions) -> Format:
@@ -170,13 +163,20 @@ def _check_places(options: ConvertOptions) -> None:
     for path in options.reports:
         renderer_for(path)
         _check_folder(path.parent)
-    _check_folder(options.output_dir or (options.output or Path("-")).parent)
+    for file in (options.output, options.depfile, options.ambiguities):
+        _check_folder((file or Path("-")).parent)
+    _check_folder(options.output_dir or Path())
 
 
 def _check_folder(folder: Path) -> None:
-    """Refuse a folder that is a file, or below one."""
+    """Refuse a folder that is a file, or below one, or that no file system would make."""
     for part in (folder, *folder.parents):
-        if part.exists():
-            if not part.is_dir():
-                raise click.UsageError(f"{folder}: cannot be a folder, since {part} is a file")
-            return
+        try:
+            found = part.stat()
+        except (FileNotFoundError, NotADirectoryError):
+            continue
+        except OSError as error:
+            raise click.UsageError(f"{folder}: cannot be a folder ({error.strerror}); choose another") from error
+        if not stat.S_ISDIR(found.st_mode):
+            raise click.UsageError(f"{folder}: cannot be a folder, since {part} is a file")
+        return

@@ -16,6 +16,7 @@ _input, _isovalue, _method, _output, _batch, _report = map(option_of, GROUPS)
 INPUT = (
     click.argument("inputs", nargs=-1, type=PATH, metavar="INPUT..."),
     _input("--files-from", type=PATH, metavar="FILE|-", help="Further inputs, one a line of FILE or of stdin (-)."),
+    _input("-0", "--null", is_flag=True, help="Names in that file end in NUL, as find -print0 writes them."),
     reading_and_offset_options,
 )
 
@@ -87,7 +88,7 @@ OUTPUT = (
         "--name",
         metavar="TEMPLATE",
         show_default="{stem}, and _{isovalue} where there are several",
-        help="Of the output, without suffix; also {name} {isovalue} {relpath} {backend} {volume}.",
+        help="Of the output, without suffix; also {name} {parent} {relpath} {isovalue} {backend} {volume}.",
     ),
     _output(
         "--space",

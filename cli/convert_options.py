@@ -25,6 +25,7 @@ class ConvertOptions:
 
     inputs: tuple[Path, ...]
     files_from: Path | None
+    null: bool
     reading: Reading
     isovalues: tuple[tuple[Choice, ...], ...]
     backend: str

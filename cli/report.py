@@ -57,6 +57,7 @@ def report(
     from .console import say_table
 
     parsed = [parse_limit(limit) for limit in limits]
+    _refuse_overwriting(reports, targets)
     for target in targets:
         renderer_for(target)
     if compare and len(reports) != 2:
@@ -93,3 +94,16 @@ def report(
     if not targets:
         say_table(batch)
     context.exit(1 if unwritten else 0)
+
+
+def _refuse_overwriting(reports: tuple[Path, ...], targets: tuple[Path, ...]) -> None:
+    """Refuse to write over a report that is read, or twice in one place."""
+    from isocore.batches.places import Places
+
+    places = Places()
+    for path in reports:
+        places.take(path, "is a report that is read")
+    for path in targets:
+        taken = places.take(path, "is written by another --to")
+        if taken is not None:
+            raise click.UsageError(f"--to {path}: {taken} and would be overwritten; choose another name")

@@ -63,6 +63,7 @@ class Job:
     ambiguities: where the ambiguous faces go, for a job of one target.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
+    refusal: why the source is not even tried, such as a folder that cannot be searched; the job fails with it.
     """
 
     source: Path
@@ -79,6 +80,7 @@ class Job:
     ambiguities: Path | None = None
     if_changed: bool = False
     force: bool = False
+    refusal: str = ""
 
     def __post_init__(self) -> None:
         if isinstance(self.offset, str):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
-from isocore.errors import FieldError, IsocoreError, OptionError, about
+from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
@@ -135,6 +135,8 @@ def _asked(job: Job, target: Target) -> Asked:
 
 
 def _read(job: Job) -> Field:
+    if job.refusal:
+        raise InputError(job.refusal)
     source = read(job.source, job.read_options)
     if isinstance(source, Volume):
         return source.in_space(job.space)

@@ -13,6 +13,8 @@ def depfile_text(jobs: Iterable[Job]) -> str:
     """Rules as compilers write them; an input without a rule of its own stays optional, so that it may vanish."""
     rules: list[str] = []
     for job in jobs:
+        if job.refusal:
+            continue
         files = files_of(job.source)
         outputs = [target.output for target in job.targets if target.output != STDOUT]
         if outputs:

@@ -12,6 +12,9 @@ from isocore.job import Job
 def plan_lines(jobs: Sequence[Job]) -> Iterator[str]:
     """What would be done and why, and how much memory it may take: the dry run."""
     for job in jobs:
+        if job.refusal:
+            yield f"fail: {job.refusal}"
+            continue
         source_hash = stamps.input_hash(job.source) if job.if_changed else ""
         for target in job.targets:
             reason = stamps.reason_to_run(job, target, source_hash)[0] if job.if_changed else "asked for"

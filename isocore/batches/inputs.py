@@ -1,0 +1,122 @@
+"""From what a command names to the files it means: folders are searched, and what cannot be is said.
+
+Names and headers only are looked at; a file that no reader takes is found out when it is converted.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePath
+
+from isocore.batches.places import place_of
+from isocore.errors import OptionError
+from isocore.readers import SEARCHED, files_of, suffix_of
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """A file to convert, and the folder it was found in: outputs mirror the way from one to the other.
+
+    common: the folder that all that the command names lies below, absolute; None where it has none.
+    refusal: why it cannot be converted, where that is known already: a folder that cannot be searched.
+    """
+
+    path: Path
+    root: Path
+    common: Path | None = None
+    refusal: str = ""
+
+    @property
+    def stem(self) -> str:
+        """The name without the suffix of its format."""
+        suffix = suffix_of(self.path)
+        return self.path.name[: -len(suffix)] if suffix else self.path.stem
+
+    @property
+    def parent(self) -> str:
+        """The name of the folder that the file lies in."""
+        return _spelled_out(self.path.parent).name
+
+    @property
+    def relative_folder(self) -> PurePath:
+        """The folders between the root and the file."""
+        return self.path.parent.relative_to(self.root)
+
+    @property
+    def below_common(self) -> PurePath:
+        """The folders between the common one and the file."""
+        here = _spelled_out(self.path.parent)
+        return here.relative_to(self.common) if self.common else self.relative_folder
+
+
+def find_inputs(names: Iterable[Path]) -> list[Input]:
+    """Files as they are named; folders searched for known suffixes, in sorted order. No file twice.
+
+    Raises OptionError for a folder without any.
+    """
+    named = [(name, _is_folder(name)) for name in names]
+    common = _common([name if is_folder else name.parent for name, is_folder in named])
+    found: dict[object, Input] = {}
+    for name, is_folder in named:
+        inside = _search(name) if is_folder else [Input(name, name.parent)]
+        if not inside:
+            raise OptionError(f"{name}: holds no file isocore reads; known are {', '.join(SEARCHED)}")
+        for item in inside:
+            found.setdefault(place_of(item.path), replace(item, common=common))
+    return list(found.values())
+
+
+def _is_folder(name: Path) -> bool:
+    try:
+        return name.is_dir()
+    except OSError:  # a name that is too long, or below a folder that may not be entered
+        return False
+
+
+def _common(folders: list[Path]) -> Path | None:
+    try:
+        return Path(os.path.commonpath([_spelled_out(folder) for folder in folders]))
+    except ValueError:  # on several drives
+        return None
+
+
+def _spelled_out(folder: Path) -> Path:
+    """Absolute and without `..`; links stay as they are named."""
+    return Path(os.path.normpath(folder.absolute()))
+
+
+def _search(root: Path) -> list[Input]:
+    """The files below a folder that lead to data, then the folders that could not be searched."""
+    errors: list[OSError] = []
+    files = [path for path in _walk(root, errors) if suffix_of(path) in SEARCHED]
+    detached = {os.path.normpath(file) for path in files for file in files_of(path)[1:]}
+    found = [Input(path, root) for path in files if os.path.normpath(path) not in detached]
+    for error in errors:
+        folder = Path(os.fsdecode(error.filename))
+        why = f"{folder}: this folder cannot be searched ({error.strerror}); check its permissions"
+        found.append(Input(folder, root.parent if folder == root else root, refusal=why))
+    return found
+
+
+def _walk(root: Path, errors: list[OSError]) -> Iterator[Path]:
+    """All files that are not hidden, each folder in sorted order; folders behind links come last, and none twice."""
+    waiting, seen = deque([root]), set()
+    while waiting:
+        for here, folders, files in os.walk(waiting.popleft(), onerror=errors.append):
+            folder = Path(here)
+            place = place_of(folder / "x")
+            if place in seen:
+                folders.clear()
+                continue
+            seen.add(place)
+            folders[:] = sorted(name for name in folders if not name.startswith("."))
+            waiting.extend(link for name in folders if (link := folder / name).is_symlink() and not _leads_up(link))
+            yield from (folder / name for name in sorted(files) if not name.startswith("."))
+
+
+def _leads_up(link: Path) -> bool:
+    """Whether a link to a folder leads to one that it lies in, so that following it would have no end."""
+    return link.parent.resolve().is_relative_to(link.resolve())

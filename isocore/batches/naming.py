@@ -1,0 +1,97 @@
+"""What a surface's file is called and where it goes: the templates of --name."""
+
+from __future__ import annotations
+
+import re
+import string
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from isocore.batches.inputs import Input
+from isocore.choices import Choice
+from isocore.errors import OptionError
+from isocore.job import Job
+
+NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume")
+#: How a volume's number may be written: in so many digits.
+_DIGITS = re.compile(r"0?\d{1,2}d?|")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Naming:
+    """Where surfaces go. output: one file, or `-`; else output_dir and template, with the format as suffix."""
+
+    output: Path | None = None
+    output_dir: Path | None = None
+    template: str | None = None
+
+
+class _NoVolume(str):
+    """Of a file with one volume: nothing, in whatever digits it is asked for."""
+
+    def __format__(self, spec: str) -> str:
+        return ""
+
+
+def check_template(template: str) -> None:
+    """Refuse a name template with unknown fields, or with a format that its field does not take."""
+    try:
+        used = [part[1:] for part in string.Formatter().parse(template) if part[1] is not None]
+    except ValueError as error:
+        raise OptionError(f"--name {template}: {error}; fields look like {{stem}}") from error
+    for name, spec, conversion in used:
+        if name not in NAME_FIELDS:
+            known = " ".join(f"{{{field}}}" for field in NAME_FIELDS)
+            raise OptionError(f"--name {template}: {{{name}}} is no field; known are {known}")
+        if conversion is not None or (spec and not (name == "volume" and _DIGITS.fullmatch(spec))):
+            given = f"{{{name}{f'!{conversion}' if conversion is not None else ''}{f':{spec}' if spec else ''}}}"
+            advice = f"write {{{name}}}" + (", or {volume:03} for three digits" if name == "volume" else "")
+            raise OptionError(f"--name {template}: {given} asks for a format that names do not take; {advice}")
+
+
+def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, several: bool) -> Path:
+    """Where one surface goes. several: an input has more than one isovalue."""
+    if naming.output is not None:
+        return naming.output
+    template = naming.template or default_template(several=several, volumes=pattern.read_options.volume is not None)
+    return folder_of(item, naming, template) / f"{_filled(template, item, choice, pattern)}.{pattern.format}"
+
+
+def default_template(*, several: bool, volumes: bool) -> str:
+    """The name where none is asked for."""
+    return "{stem}" + "_v{volume}" * volumes + "_{isovalue}" * several
+
+
+def folder_of(item: Input, naming: Naming, template: str = "") -> Path:
+    """Where the names of an input's outputs start: mirrored below the output folder, or beside the input."""
+    below = "{relpath}" in template
+    if naming.output_dir is not None:
+        return naming.output_dir if below else naming.output_dir / item.relative_folder
+    if not below:
+        return item.path.parent
+    up = len(item.below_common.parts)
+    return [item.path.parent, *item.path.parent.parents][up] if up <= len(item.path.parent.parents) else Path()
+
+
+def _filled(template: str, item: Input, choice: Choice, pattern: Job) -> str:
+    volume = pattern.read_options.volume
+    return template.format(
+        stem=item.stem,
+        name=item.path.name,
+        isovalue=str(choice),
+        relpath=(item.below_common / item.stem).as_posix(),
+        parent=item.parent,
+        backend=pattern.backend or "auto",
+        volume=_NoVolume() if volume is None else volume,
+    )
+
+
+def other_templates(template: str) -> Iterator[str]:
+    """Templates that tell more apart than this one, the shortest names first."""
+    places = ("{stem}", "{relpath}", "{parent}_{stem}", "{name}", "{parent}_{name}", "{relpath}_{name}")
+    kept = next((field for field in ("{stem}", "{name}", "{relpath}") if field in template), None)
+    bases = [template.replace(kept, place, 1) if kept else f"{place}_{template}" for place in places]
+    for more in ("", "_{isovalue}", "_v{volume}", "_v{volume}_{isovalue}"):
+        if not any(field in template for field in re.findall(r"{\w+", more)):
+            yield from (base + more for base in bases)
