@@ -13,6 +13,8 @@ from isocore.errors import InputError, IsocoreError, about, reading
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
+from isocore.readers.pointers import absence, pointer
+from isocore.readers.strangers import what_it_is
 
 if TYPE_CHECKING:
     from isocore.readers.vtk_fields import FieldInfo
@@ -63,12 +65,15 @@ def content_bytes(path: Path) -> int:
 def _format(path: os.PathLike[str] | str) -> Format:
     if Path(path).is_dir():
         raise InputError("is a folder, not a file; name the file inside it")
-    suffix = suffix_of(path)
-    if suffix is None:
-        raise InputError(f"has no suffix known here; known are {', '.join(SEARCHED)}")
+    if not Path(path).exists():
+        raise InputError(absence(Path(path)))
     found = Path(path).stat()
     if not stat.S_ISREG(found.st_mode):
         raise InputError("is a pipe or a device, not a file; write what it holds to a file first")
+    suffix = suffix_of(path)
+    if suffix is None:
+        known = f"has no suffix known here; known are {', '.join(SEARCHED)}"
+        raise InputError(what_it_is(Path(path), BY_SUFFIX, None) or known)
     if not found.st_size:
         raise InputError("is empty; copy it again")
     return BY_SUFFIX[suffix]
@@ -82,9 +87,23 @@ def _named(path: os.PathLike[str] | str) -> Iterator[None]:
         try:
             yield
         except IsocoreError as error:
+            if stranger := _stranger(Path(path), error):
+                raise InputError(f"{name}: {stranger}") from error
             if about(name, error) == str(error):
                 raise
             raise type(error)(about(name, error)) from error
+
+
+def _stranger(path: Path, error: IsocoreError) -> str | None:
+    """What was tried to be read, where it is something else than its suffix says, or what belongs to it is."""
+    suffix = suffix_of(path)
+    bare = suffix in (".raw", ".raw.gz")
+    if suffix is None or not path.is_file() or not (isinstance(error, InputError) or bare):
+        return None
+    if found := what_it_is(path, BY_SUFFIX, BY_SUFFIX[suffix], bare=bare):
+        return found
+    beside = ((file, pointer(file)) for file in files_of(path)[1:])
+    return next((f"its file {file.name} {found}" for file, found in beside if found), None)
 
 
 __all__ = [

@@ -14,6 +14,7 @@ from isocore.readers.layout import Layout, chosen, load, spatial
 from isocore.readers.nifti_header import LONGEST, has_samples, parsed, placement, sample_type, scaling, sizes_of
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import Packed, packing_by_suffix, packing_of
+from isocore.readers.pointers import absence_beside
 from isocore.readers.sample_types import contourable, from_float128
 from isocore.volume import Volume
 
@@ -30,6 +31,7 @@ def read_nifti(path: Path, options: ReadOptions) -> Volume:
         source.skip(start)
         samples: Any = load(source, layout, volume)
         source.finish()
+        behind = source.warnings
     samples, lost = from_float128(samples, header.endianness) if samples.dtype.kind == "V" else contourable(samples)
     slope, intercept = scaling(header)
     place = placement(header)
@@ -40,7 +42,7 @@ def read_nifti(path: Path, options: ReadOptions) -> Volume:
         affine=place.affine,
         space=place.space,
         unit=place.unit,
-        warnings=lost + place.warnings,
+        warnings=lost + place.warnings + behind,
     )
 
 
@@ -77,7 +79,7 @@ def _samples(header_path: Path, image_path: Path | None) -> Packed:
     if image_path is None:
         return Packed(header_path, packing=packing_of(header_path))
     if not image_path.is_file():
-        raise InputError(f"its samples are missing: no {image_path.name} beside it; put it there")
+        raise InputError(f"its samples are missing: {absence_beside(image_path)}")
     return Packed(image_path, packing=packing_by_suffix(image_path), subject=f"{image_path.name} ")
 
 
@@ -101,5 +103,5 @@ def _pair(path: Path) -> tuple[Path, Path | None]:
     if kind.lower() == ".hdr":
         return path, found
     if not found.is_file():
-        raise InputError(f"its header is missing: no {found.name} beside it; put it there")
+        raise InputError(f"its header is missing: {absence_beside(found)}")
     return found, path

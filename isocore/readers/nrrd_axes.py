@@ -36,6 +36,9 @@ _MM_PER_UNIT = {
 #: Encodings whose samples are written as text, without a byte order.
 TEXT_ENCODINGS = ("ascii", "text", "txt")
 
+#: As many axes as any NRRD file may have (NRRD_DIM_MAX).
+_MOST_AXES = 16
+
 #: Kinds of axis along which samples lie in space; every other kind tells volumes apart.
 _SPATIAL_KINDS = ("domain", "space", "???", "none")
 _COLOURS = {
@@ -58,7 +61,9 @@ class Axes:
 def axes_of(head: Head) -> Axes:
     """Which axes lie in space, which one tells volumes apart, and what is stored."""
     dimension, sizes = head.need("dimension"), tuple(head.need("sizes").tolist())
-    listed = " ".join(map(str, sizes))[:60]
+    if not 1 <= dimension <= _MOST_AXES:
+        raise InputError(f"header counts {dimension:,} axes, where 1 to {_MOST_AXES} are possible; it is damaged")
+    listed = " ".join(map(str, sizes[: _MOST_AXES + 1]))[:60]
     if len(sizes) != dimension or min(sizes, default=-1) < 0:
         raise InputError(f"header gives {dimension} axes the sizes {listed}; it is damaged")
     in_space = _in_space(head, sizes)

@@ -62,7 +62,7 @@ class Head:
 
 def parsed(path: Path) -> Head:
     """The head of `path`, up to its first empty line or the file's end."""
-    fields: dict[str, Any] = {}
+    texts: dict[str, str] = {}
     files: list[str] = []
     with path.open("rb") as file:
         magic = _magic(file)
@@ -72,7 +72,8 @@ def parsed(path: Path) -> Head:
             if name == _LISTED:
                 files.append(text)
             else:
-                fields[name] = _value(magic, name, text)
+                texts[name] = text  # of a field that stands there a million times one is read
+        fields = {name: _value(magic, name, text) for name, text in texts.items()}
         return Head(fields, file.tell(), tuple(files))
 
 

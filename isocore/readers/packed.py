@@ -6,23 +6,28 @@ several members and check every checksum they pass. Messages carry no path: `iso
 
 from __future__ import annotations
 
-import bz2
+import gzip
+import io
 import os
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO, Any, Literal, Protocol, Self, cast
+from typing import IO, Any, Protocol, Self, TypeVar, cast
 
 from isocore.errors import InputError, one_line
+from isocore.readers.members import Bounded, Packing, content, end_of_members, inflater_error, is_padded, unpacking
 
-Packing = Literal["none", "gzip", "bzip2"]
+Got = TypeVar("Got")
 
 #: One call of the inflater: small enough to stay in the second-level cache.
 _CHUNK = 1 << 18
-#: No deflate stream inflates to more than this many times its size, and a scan usually to this many.
-_DEFLATE_LIMIT = 1032
+#: No deflate stream inflates to more than this many times its size, no bzip2 block of 900,000 bytes that run-length
+#: coding made of 255 times as many is shorter than thirty; a scan usually inflates to four times its size.
+_LIMITS = {"gzip": 1032, "bzip2": 1_600_000}
 _USUAL_RATIO = 4
+#: Surplus content is counted so far: it may be endless, and a warning says that there is too much all the same.
+_MOST_SURPLUS = 1 << 26
 #: The shortest gzip file: a header of ten bytes, and a checksum and a size of four each.
 _SHORTEST_GZIP = 18
 
@@ -55,17 +60,20 @@ def unpacked_bytes(path: Path) -> int:
             stated = int.from_bytes(file.read(4), "little")
     except OSError:
         return 0
-    return min(stated, size * _DEFLATE_LIMIT) if stated >= size else size * _USUAL_RATIO
+    return min(stated, size * _LIMITS["gzip"]) if stated >= size else size * _USUAL_RATIO
 
 
 class Source(Protocol):
-    """Bytes that are read once, forwards."""
+    """Bytes that are read once, forwards. warnings: complete when all has been read."""
+
+    @property
+    def warnings(self) -> tuple[str, ...]: ...
 
     def skip(self, count: int) -> None: ...
 
     def fill(self, target: memoryview) -> None: ...
 
-    def rest(self) -> int: ...
+    def rest(self, expected: int = 0) -> int: ...
 
 
 class Packed:
@@ -84,9 +92,16 @@ class Packed:
         self._subject, self._advice = subject, advice
         self._path, self._packing, self._start = path, packing, start
         self._promised = self._unpacked = 0
+        self._bounded = False
+        self.warnings: tuple[str, ...] = ()
         self._file = path.open("rb", buffering=0)
         self._file.seek(start)
-        self._content: Any = _unpacking(self._file, packing)
+        self._content: Any = unpacking(self._file, packing)
+
+    @property
+    def is_packed(self) -> bool:
+        """Whether the content is more than the file's bytes."""
+        return self._packing != "none"
 
     def __enter__(self) -> Self:
         return self
@@ -101,8 +116,9 @@ class Packed:
         file_bytes = self._plain_bytes()
         if self._packing == "none" and file_bytes < content_bytes:
             raise self._ends_early(file_bytes)
-        if self._packing == "gzip" and content_bytes > file_bytes * _DEFLATE_LIMIT:
-            most = f"{file_bytes:,} of gzip hold at most {file_bytes * _DEFLATE_LIMIT:,}"
+        limit = _LIMITS.get(self._packing)
+        if limit is not None and content_bytes > file_bytes * limit:
+            most = f"{file_bytes:,} of {self._packing} hold at most {file_bytes * limit:,}"
             raise InputError(f"{self._subject}should hold {content_bytes:,} bytes; {most}; {self._advice}")
         memory_bytes = _memory_bytes()
         if kept_bytes > memory_bytes:
@@ -111,9 +127,9 @@ class Packed:
     def read(self, count: int) -> bytes:
         """The next `count` bytes; fewer where the content ends."""
         with self._intact():
-            content = bytes(self._content.read(count))
-        self._unpacked += len(content)
-        return content
+            found = bytes(self._taken(lambda: self._content.read(count)))
+        self._unpacked += len(found)
+        return found
 
     def skip(self, count: int) -> None:
         """Leave out the next `count` bytes."""
@@ -130,7 +146,8 @@ class Packed:
         filled = 0
         with self._intact():
             while filled < len(target):
-                got = self._content.readinto(target[filled : filled + _CHUNK])
+                part = target[filled : filled + _CHUNK]
+                got = self._taken(lambda part=part: self._content.readinto(part))  # type: ignore[misc]
                 if not got:
                     raise self._ends_early(self._plain_bytes() if self._packing == "none" else self._unpacked)
                 filled += got
@@ -138,18 +155,32 @@ class Packed:
 
     def finish(self) -> None:
         """Look one byte ahead: at the end of the content this checks the last checksum."""
-        if self._packing != "none":
-            self.read(1)
+        if self._packing != "none" and not self.read(1):
+            self._note_padding()
 
-    def rest(self) -> int:
-        """How many bytes are left; they are read."""
+    def rest(self, expected: int = 0) -> int:
+        """How many bytes are left; they are read. Of packed ones no more are counted than tell that it is too many."""
         if self._packing == "none":
             return self._start + self._plain_bytes() - self._file.tell()
-        return sum(len(chunk) for chunk in iter(lambda: self.read(_CHUNK), b""))
+        left, most = 0, expected + _MOST_SURPLUS
+        while left < most and (chunk := self.read(_CHUNK)):
+            left += len(chunk)
+        if left < most:
+            self._note_padding()
+        return left
 
-    def content_bytes(self) -> int:
-        """How many bytes the whole content has: where it is packed, a pass of its own through all of it."""
-        return self._plain_bytes() if self._packing == "none" else sum(map(len, self._whole()))
+    def content_bytes(self, *, most: float = float("inf")) -> int:
+        """How many bytes the whole content has, or a number above `most`: a pass of its own where it is packed."""
+        if self._packing == "none":
+            return self._plain_bytes()
+        held = 0
+        with self._path.open("rb") as file:
+            file.seek(self._start)
+            for piece in content(file, self._packing):
+                held += len(piece)
+                if held > most:
+                    break
+        return held
 
     def _plain_bytes(self) -> int:
         return self._path.stat().st_size - self._start
@@ -160,8 +191,8 @@ class Packed:
         try:
             yield
         except EOFError:  # the inflater keeps to itself what it had unpacked before the cut
-            raise self._ends_early(self.content_bytes()) from None
-        except (zlib.error, ValueError, OSError, _isal_error()) as error:
+            raise self._ends_early(self.content_bytes(most=self._promised)) from None
+        except (zlib.error, ValueError, OSError, inflater_error()) as error:
             if self._packing == "none":
                 raise
             why = f"compressed data is damaged ({one_line(error)})"
@@ -171,44 +202,32 @@ class Packed:
         where = f"({held_bytes:,} of {self._promised:,} bytes)" if held_bytes < self._promised else "amid packed data"
         return InputError(f"{self._subject}ends early {where}; {self._advice}")
 
-    def _whole(self) -> Iterator[bytes]:
-        """All of the content that can be had, from its first byte, however damaged its end."""
-        with self._path.open("rb") as file:
-            file.seek(self._start)
-            unpacker = _unpacker(self._packing)
-            for packed in iter(lambda: file.read(1 << 14), b""):
-                while packed:
-                    try:
-                        yield unpacker.decompress(packed)
-                    except (zlib.error, OSError):
-                        return
-                    packed = unpacker.unused_data
-                    if unpacker.eof:
-                        unpacker = _unpacker(self._packing)
-
-
-def _unpacker(packing: Packing) -> Any:
-    return zlib.decompressobj(wbits=31) if packing == "gzip" else bz2.BZ2Decompressor()
-
-
-def _unpacking(file: IO[bytes], packing: Packing) -> Any:
-    """`file` as one to read the unpacked content from."""
-    if packing == "gzip":
+    def _taken(self, take: Callable[[], Got]) -> Got:
+        """What `take` reads; where no gzip member follows the last whole one, without what stands there instead."""
         try:
-            from isal import igzip as inflater
-        except ImportError:
-            import gzip as inflater  # type: ignore[no-redef]
-        return inflater.GzipFile(fileobj=file, mode="rb")  # type: ignore[no-untyped-call]
-    return bz2.BZ2File(file) if packing == "bzip2" else file
+            return take()
+        except (EOFError, gzip.BadGzipFile):
+            end = None if self._bounded or self._packing != "gzip" else end_of_members(self._path, self._start)
+            if end is None:
+                raise
+        self._bounded = True
+        self._file.seek(self._start)
+        self._content.close()
+        self._content = unpacking(cast(IO[bytes], io.BufferedReader(Bounded(self._file, end))), self._packing)
+        surplus = self._path.stat().st_size - end
+        self.warnings += (
+            f"{self._subject}has {surplus:,} bytes behind its gzip data that are none; they were left out, but"
+            " check that the copy is whole",
+        )
+        scratch, again = memoryview(bytearray(_CHUNK)), self._unpacked
+        while again and (got := self._content.readinto(scratch[: min(again, _CHUNK)])):
+            again -= got
+        return take()
 
-
-def _isal_error() -> type[Exception]:
-    """What isal raises; it is no zlib.error."""
-    try:
-        from isal.isal_zlib import error
-    except ImportError:
-        return zlib.error
-    return cast(type[Exception], error)
+    def _note_padding(self) -> None:
+        """A warning where zeros follow the last gzip member: inflaters pass over them without a word."""
+        if self._packing == "gzip" and not self._bounded and is_padded(self._path, self._unpacked):
+            self.warnings += (f"{self._subject}is padded with zeros behind its gzip data; they were left out",)
 
 
 def _memory_bytes() -> float:

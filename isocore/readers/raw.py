@@ -49,14 +49,15 @@ def read_raw(path: Path, options: ReadOptions) -> Volume:
     """The volume of a raw file, i fastest; world is index times spacing plus origin."""
     told = _described(path, options)
     volume = chosen(told.layout, options.volume)
-    warnings: tuple[str, ...] = ()
     with Packed(path, packing=packing_by_suffix(path), advice=_ADVICE) as source:
         source.promise(told.offset + told.layout.total_bytes, kept_bytes=told.layout.volume_bytes)
         source.skip(told.offset)
         samples: Any = load(source, told.layout, volume)
-        surplus = source.rest() - told.layout.volume_bytes * (told.layout.volumes - 1 - volume)
+        following = told.layout.volume_bytes * (told.layout.volumes - 1 - volume)
+        surplus = source.rest(following) - following
+        warnings = source.warnings
     if surplus > 0:
-        warnings = (f"has {surplus:,} bytes more than it should; {_ADVICE}",)
+        warnings += (f"has {surplus:,} bytes more than it should; {_ADVICE}",)
     samples, lost = contourable(samples)
     affine = np.diag([*told.spacing, 1.0])
     affine[:3, 3] = told.origin

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from mmap import mmap
 from typing import Any
 
@@ -20,7 +20,27 @@ DTYPES = {
     **{f"UInt{bits}": f"u{bits // 8}" for bits in (8, 16, 32, 64)},
     **{f"Float{bits}": f"f{bits // 8}" for bits in (32, 64)},
 }
+#: Arrays may share bytes, as long as no more than this comes of it.
+_MOST_SHARED = 1 << 26
 _TEXT = re.compile(rb"\S")
+
+
+@dataclass(slots=True)
+class _Used:
+    """What arrays have taken so far: letters of the file, and bytes of numbers that came of them."""
+
+    letters: int = 0
+    unpacked: int = 0
+
+    def add(self, letters: int, unpacked: int, held: int) -> None:
+        """BadBlock where arrays share so much of the file's `held` bytes that a small one fills the memory."""
+        self.letters += letters
+        self.unpacked += unpacked
+        if self.letters > held and self.unpacked > _MOST_SHARED:
+            raise BadBlock(
+                f"shares its bytes with others: so far {self.letters:,} were taken of a file of {held:,};"
+                " write each array once"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +50,7 @@ class ArrayReader:
     path: str
     data: mmap | bytes
     layout: Layout
+    used: _Used = field(default_factory=lambda: _Used())
 
     def read(self, tag: ArrayTag, values: int | None = None) -> npt.NDArray[Any]:
         """The array's numbers, flat, in the file's type and byte order; `values`: how many it has to hold.
@@ -63,7 +84,9 @@ class ArrayReader:
         else:
             raise BadBlock(f"has format {tag.format!r}; ascii, binary or appended is needed")
         header = np.dtype(self._order() + DTYPES[self.layout.header_type])
-        block = payload(Segments(text, header, base64=base64), self.layout.compressor)
+        segments = Segments(text, header, base64=base64)
+        block = payload(segments, self.layout.compressor)
+        self.used.add(segments.position, len(block), len(self.data))
         if len(block) % dtype.itemsize:
             raise BadBlock(
                 f"has {len(block):,} bytes, which is no multiple of {dtype.itemsize}; copy the file again"

@@ -36,6 +36,8 @@ LARGEST_RATIO = {"vtkZLibDataCompressor": 1100, "vtkLZMADataCompressor": 1 << 15
 
 
 _PARTS_AT_ONCE = 256
+#: The highest level of LZMA asks for 65 MiB.
+_LZMA_MEMORY = 1 << 28
 
 
 class BadBlock(Exception):
@@ -140,12 +142,29 @@ def _threads(compressor: str) -> int:
     return min(4, os.cpu_count() or 1) if compressor == "vtkLZMADataCompressor" else 1
 
 
+def _inflated_zlib(part: memoryview, wanted: int) -> bytes:
+    """No longer than wanted + 1: `decompress` itself takes its size for a hint only."""
+    inflater = fast_zlib.decompressobj(zlib.MAX_WBITS)
+    inflated: bytes = inflater.decompress(part, wanted + 1)
+    if not inflater.eof and len(inflated) <= wanted:
+        raise EOFError("its zlib stream is cut")
+    return inflated
+
+
+def _inflated_lzma(part: memoryview, wanted: int) -> bytes:
+    inflater = lzma.LZMADecompressor(memlimit=_LZMA_MEMORY)
+    inflated = inflater.decompress(part, wanted + 1)
+    if not inflater.eof and len(inflated) <= wanted:
+        raise EOFError("its LZMA stream is cut")
+    return inflated
+
+
 def _inflater(compressor: str) -> Inflate:
     """inflate(part, wanted): the bytes of a part; of those beyond `wanted` one is enough to tell."""
     if compressor == "vtkZLibDataCompressor":
-        return lambda part, wanted: fast_zlib.decompress(part, zlib.MAX_WBITS, wanted + 1)
+        return _inflated_zlib
     if compressor == "vtkLZMADataCompressor":
-        return lambda part, wanted: lzma.LZMADecompressor().decompress(part, wanted + 1)
+        return _inflated_lzma
     if compressor != "vtkLZ4DataCompressor":
         raise BadBlock(f"is compressed with {compressor}, which is unknown; write the file with zlib")
     try:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import bz2
 import gzip
 import sys
+from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,8 @@ from scans import patched, ramp, save
 from isocore.errors import InputError, reading
 from isocore.readers import packed, read
 from isocore.readers.joined import Decoded, Joined
-from isocore.readers.packed import Packed, Packing, packing_of, unpacked_bytes
+from isocore.readers.members import Packing
+from isocore.readers.packed import Packed, packing_of, unpacked_bytes
 from isocore.volume import Volume
 
 CONTENT = bytes(range(256)) * 5000
@@ -162,15 +165,15 @@ def test_zeros_packed_as_densely_as_can_be_are_no_lie(tmp_path: Path) -> None:
 
 
 def test_more_than_the_machine_has_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """bzip2 has no bound worth a test, so that memory is the bound."""
+    """bzip2 may inflate a million times, so that memory is the bound."""
     monkeypatch.setattr(packed, "_memory_bytes", lambda: 10**9)
     path = tmp_path / "content"
     path.write_bytes(bz2.compress(CONTENT))
     with (
-        pytest.raises(InputError, match="needs 2,000,000,000,000 bytes of memory of 1,000,000,000; crop the data"),
+        pytest.raises(InputError, match="needs 1,500,000,000 bytes of memory of 1,000,000,000; crop the data"),
         Packed(path, packing="bzip2") as source,
     ):
-        source.promise(2 * 10**12, kept_bytes=2 * 10**12)
+        source.promise(15 * 10**8, kept_bytes=15 * 10**8)
 
 
 def _filled_promise(path: Path, content_bytes: int) -> None:
@@ -198,10 +201,81 @@ def test_an_image_that_begins_like_gzip_is_none(tmp_path: Path) -> None:
 
 def test_joined_parts_read_as_one() -> None:
     """Over every seam, filling and skipping."""
-    parts = [Decoded(CONTENT[at : at + 10], 10) for at in range(0, 50, 10)]
-    source, target = Joined(parts, 10), bytearray(23)
-    source.skip(13)
-    source.fill(memoryview(target))
-    assert bytes(target) == CONTENT[13:36]
-    source.fill(memoryview(bytearray(14)))
-    assert source.rest() == 0
+    parts = [partial(nullcontext, Decoded(CONTENT[at : at + 11], 10)) for at in range(0, 50, 10)]
+    target = bytearray(23)
+    with Joined(parts, 10) as source:
+        source.skip(13)
+        source.fill(memoryview(target))
+        assert bytes(target) == CONTENT[13:36]
+        source.fill(memoryview(bytearray(14)))
+        assert source.rest() == 5, "one byte too much in each"
+
+
+@pytest.mark.parametrize("inflater", ["isal", "zlib"])
+@pytest.mark.parametrize("members", [1, 3])
+@pytest.mark.parametrize(
+    ("tail", "said"),
+    [
+        (bytes(1), "is padded with zeros"),
+        (bytes(700), "is padded with zeros"),
+        (b"garbage", "has 7 bytes behind its gzip data that are none"),
+        (b"\r\n", "has 2 bytes behind"),
+        (b"\x1f", "has 1 bytes behind"),
+        (bytes(40) + b"garbage", "has 47 bytes behind"),
+        (b"x" * 1_000_000, "has 1,000,000 bytes behind"),
+    ],
+)
+def test_bytes_behind_the_last_member_are_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inflater: str, members: int, tail: bytes, said: str
+) -> None:
+    """The volume is whole, and a warning says what else is there; one zero behind several members looks like none."""
+    if inflater == "zlib":
+        monkeypatch.setitem(sys.modules, "isal", None)
+    samples = np.random.default_rng(3).integers(0, 99, (80, 80, 60)).astype(np.int16)
+    path = save(tmp_path / "scan.nii", samples)
+    content = path.read_bytes()
+    step = -(-len(content) // members)
+    packed_ = b"".join(gzip.compress(content[at : at + step]) for at in range(0, len(content), step))
+    for suffix in (".nii.gz", ".nii"):
+        path = tmp_path / f"behind{suffix}"
+        path.write_bytes(packed_ + tail)
+        field = read(path)
+        assert isinstance(field, Volume) and np.array_equal(field.samples, samples)
+        if not (members > 1 and tail == bytes(1)):
+            (warning,) = field.warnings
+            assert warning.startswith(said) and "left out" in warning
+
+
+@pytest.mark.parametrize("inflater", ["isal", "zlib"])
+def test_a_cut_member_is_an_error_wherever_it_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inflater: str
+) -> None:
+    """What follows the last whole member is one too, by its first two bytes."""
+    if inflater == "zlib":
+        monkeypatch.setitem(sys.modules, "isal", None)
+    path = save(tmp_path / "scan.nii.gz", ramp((30, 30, 30)))
+    whole = path.read_bytes()
+    for tail in (gzip.compress(b"")[:-1], gzip.compress(b"more")[:5], b"\x1f\x8b", bytes(9) + b"\x1f\x8b\x08"):
+        path.write_bytes(whole + tail)
+        with pytest.raises(InputError, match="ends early amid packed data; copy it again"):
+            read(path)
+
+
+def test_an_empty_block_at_the_end_is_no_padding(tmp_path: Path) -> None:
+    """BGZF ends with one, whose last bytes are zeros; and so does what packs nothing at the end."""
+    path = save(tmp_path / "scan.nii.gz", ramp())
+    whole = path.read_bytes()
+    for last in (bytes.fromhex("1f8b08040000000000ff0600424302001b0003000000000000000000"), gzip.compress(b"")):
+        path.write_bytes(whole + last)
+        field = read(path)
+        assert isinstance(field, Volume) and not field.warnings
+
+
+def test_surplus_without_end_is_not_counted_to_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Enough to tell that there is too much."""
+    monkeypatch.setattr(packed, "_MOST_SURPLUS", 1 << 20)
+    path = tmp_path / "content"
+    path.write_bytes(gzip.compress(bytes(50_000_000)))
+    with Packed(path, packing="gzip") as source:
+        source.skip(100)
+        assert 1 << 20 <= source.rest() < 2 << 20
