@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from isocore.digits import exact, legible
 from isocore.errors import printable
 
 from .console import say, screen_width, styled, unarmed
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 _WIDEST, _NARROWEST = 64, 8
 _BARS = " ▁▂▃▄▅▆▇█"
 _ROWS = 6
+#: Of lengths and scales: what a float32 holds.
+_DIGITS = 9
 
 
 @click.command(cls=GroupedCommand, short_help="What a file holds, and which isovalues make sense.")
@@ -73,7 +76,7 @@ def _lines(path: Path, found: Description, width: int | None) -> list[str]:
     for key, text in [*facts, *(("warning", warning) for warning in found.facts["warnings"])]:
         lines += folded(f"  {key:<12} ", text, width)
     lines += drawn(found.spread.coarse(_bars(width)), width)
-    isovalues = [(f"{choice.isovalue:.6g}", f"-i {choice.asked}", choice.why) for choice in found.isovalues]
+    isovalues = [(exact(choice.isovalue), f"-i {choice.asked}", choice.why) for choice in found.isovalues]
     number, option = (max((len(row[n]) for row in isovalues), default=0) for n in (0, 1))
     for value, asked, why in isovalues:
         lines += folded(f"  {'isovalue':<12} {value:<{number}}  {asked:<{option}}  ", why, width)
@@ -84,9 +87,10 @@ def _lines(path: Path, found: Description, width: int | None) -> list[str]:
 
 def _line(key: str, value: Any) -> str:
     if key == "range":
-        return f"{_text(value[0])} to {_text(value[1])}" if value else "no finite sample"
+        return " to ".join(legible(*value)) if value else "no finite sample"
     if key == "bounds":
-        low, high = (", ".join(_text(part) for part in corner) for corner in value)
+        axes = [legible(*ends, digits=_DIGITS) for ends in zip(*value, strict=True)]
+        low, high = (", ".join(corner) for corner in zip(*axes, strict=True))
         return f"({low}) to ({high})"
     return _text(value)
 
@@ -103,7 +107,9 @@ def _text(value: Any) -> str:
         return (", " if value and isinstance(value[0], str) else " x ").join(_text(item) for item in value)
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:,}" if isinstance(value, int) else f"{value:.6g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{value:.{_DIGITS}g}"
+    return f"{value:,}" if isinstance(value, int) else str(value)
 
 
 def _bars(width: int | None) -> int:
@@ -131,7 +137,7 @@ def drawn(bars: Bars, width: int | None = None) -> list[str]:
     for row in reversed(range(_ROWS)):
         cells = (min(max(height - row * (len(_BARS) - 1), 0), len(_BARS) - 1) for height in heights)
         lines.append("  " + "".join(_BARS[cell] for cell in cells).rstrip())
-    low, high = f"{bars.low:.6g}", f"{bars.high:.6g}"
+    low, high = legible(bars.low or 0.0, bars.high or 0.0)
     ends = "  " + low + high.rjust(max(len(counts) - len(low), len(high) + 1))
     note = "  (log scale)"
     return [*lines, ends + note] if width is None or cells_of(ends + note) <= width else [*lines, ends, note]

@@ -141,6 +141,22 @@ class Extent(NamedTuple):
 
 def extent(samples: npt.NDArray[Any], threads: int) -> Extent: ...
 
+class Within(NamedTuple):
+    minimum: float  # inf, and maximum -inf, where there is no such sample
+    maximum: float
+    samples: int
+
+# extent_between: of the samples from low to high, both included
+def extent_between(samples: npt.NDArray[Any], low: float, high: float, threads: int) -> Within: ...
+
+class Ranked(NamedTuple):
+    value: float
+    below: int  # samples smaller than it
+    equal: int  # samples like it, itself included
+
+# sample_of_rank: the sample with `rank` others before it, of the samples from low to high
+def sample_of_rank(samples: npt.NDArray[Any], low: float, high: float, rank: int, threads: int) -> Ranked: ...
+
 # histogram: counts in equal bins from low to high
 def histogram(
     samples: npt.NDArray[Any], low: float, high: float, bins: int, threads: int

@@ -2,8 +2,7 @@
 
 An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, or `A:B:N` (N numbers from A to B). The bound
 on the error is a length in voxels (`0.5`) or in world units (`0.3mm`), or `none`. The point that vertices are written
-about is `auto` or three numbers. The command line's help reads this
-file, so it imports no numpy before a range is asked for.
+about is `auto` or three numbers. The command line's help reads this file, so it imports no numpy.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
+from isocore.digits import exact
 from isocore.errors import OptionError
 
 Format: TypeAlias = Literal["ply", "obj", "stl"]
@@ -159,13 +159,17 @@ def spread(text: str) -> tuple[Choice, ...]:
 
 
 def _spread_range(text: str, first: float, last: float, count: int) -> tuple[Choice, ...]:
-    """Nine digits of each number name it, and are what is drawn: the name of an output says its isovalue exactly."""
+    """The doubles nearest to the numbers that divide the range in equal steps; each is named so that it reads back."""
     if not 1 <= count <= _MOST_OF_A_RANGE:
         raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
-    import numpy as np  # late, so that the command line's help stays quick
+    from fractions import Fraction  # late, so that the command line's help stays quick
 
-    names = [f"{value:.9g}" for value in np.linspace(first, last, count).tolist()]
-    return tuple(Number(float(name), name) for name in names)
+    # As decimal fractions: 0.1:0.3:3 means 0.2 in the middle, not what rounded ends would make of it.
+    start, step = Fraction(repr(first)), (Fraction(repr(last)) - Fraction(repr(first))) / max(count - 1, 1)
+    values = [float(start + step * number) for number in range(count)]
+    if len(set(values)) < count:
+        raise OptionError(f"isovalue {text}: its {count} values are not all different; ask for fewer or a wider range")
+    return tuple(Number(value, exact(value)) for value in values)
 
 
 def _number(text: str, part: str) -> float:

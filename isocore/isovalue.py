@@ -11,107 +11,165 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from isocore import _kernels
+from isocore.apart import Apart
 from isocore.choices import Auto, Choice, Number, Otsu, Percentile
+from isocore.digits import exact, legible
 from isocore.errors import FieldError
 from isocore.histogram import Histogram
+
+#: From this share of the samples on, values that were set aside for Otsu's threshold are named beside a percentile.
+_SHARE_THAT_MOVES = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """An isovalue: how it was asked for, the number, and how that came about."""
+    """An isovalue: how it was asked for, the number, how that came about, and what its user should know."""
 
     asked: Choice
     isovalue: float
     why: str
+    warnings: tuple[str, ...] = ()
 
 
 def choose(choice: Choice, histogram: Histogram) -> Chosen:
-    """The number behind a choice, for these samples. Raises FieldError where the samples offer none."""
+    """The number behind a choice, for these samples. Raises FieldError where it is too large to be one."""
+    chosen = _chosen(choice, histogram)
+    if not math.isfinite(chosen.isovalue):
+        raise FieldError(f"{choice} is no finite number here: slope and intercept make the samples too large")
+    return chosen
+
+
+def _chosen(choice: Choice, histogram: Histogram) -> Chosen:
     if isinstance(choice, Number):
         return Chosen(choice, choice.value, "given")
-    _needs_two_values(histogram)
+    ends = histogram.range
+    if ends is None:
+        return Chosen(choice, 0.5, "no sample is finite, so any isovalue is as good")
     if isinstance(choice, Percentile):
-        value = histogram.scaled(percentile(histogram, choice.percent))
-        return Chosen(choice, value, f"percentile {choice.text[1:]} of the finite samples")
+        value = percentile(histogram, choice.percent)
+        why = f"percentile {choice.text[1:]} of the finite samples"
+        return Chosen(choice, value, why, _beside_a_percentile(histogram))
+    if ends[0] == ends[1]:
+        return Chosen(choice, _for_a_constant(ends[0]), f"every sample is {exact(ends[0])}, so none divides them")
+    warnings = tuple(_set_aside(group, histogram) for group in histogram.apart)
     if isinstance(choice, Otsu):
-        return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold")
+        return Chosen(choice, otsu(histogram), "Otsu's threshold", warnings)
     if is_two_valued(histogram):
-        low, high = histogram.range or (0.0, 0.0)
-        return Chosen(choice, (low + high) / 2, f"midpoint of the two values {low:g} and {high:g}")
-    return Chosen(choice, histogram.scaled(otsu(histogram)), "Otsu's threshold, since none was given")
+        low, high = histogram.kept_range or ends
+        why = "midpoint of the two values {} and {}".format(*legible(low, high))
+        return Chosen(choice, _middle(low, high), why, warnings)
+    return Chosen(choice, otsu(histogram), "Otsu's threshold, since none was given", warnings)
 
 
-def _needs_two_values(histogram: Histogram) -> None:
-    if not histogram.finite:
-        raise FieldError("holds no finite sample, so there is no isovalue to choose; check the file")
-    if histogram.minimum == histogram.maximum:
-        value = histogram.scaled(histogram.minimum)
-        raise FieldError(f"every sample is {value:g}, so there is no isovalue to choose; give one with -i")
+def _for_a_constant(value: float) -> float:
+    """Where the surface of a mask would lie that is empty, or that fills its volume: capped, the latter has one."""
+    return value / 2 if value else 0.5
+
+
+def _middle(low: float, high: float) -> float:
+    """Halfway, but above `low` also where no double lies between the two: inside is from the isovalue on."""
+    middle = low / 2 + high / 2 if math.isinf(low + high) else (low + high) / 2
+    return middle if middle > low else high
+
+
+def _set_aside(group: Apart, histogram: Histogram) -> str:
+    """The warning for a choice that left a group of samples out."""
+    low, high = histogram.kept_range or (math.nan, math.nan)
+    side = "inside" if group.low > high else "outside"
+    others = "all others ({} to {})".format(*legible(low, high))
+    told = f"{_share(group, histogram)}, far from {others}: "
+    told += (
+        "it was set aside to choose the isovalue and counts"
+        if group.count == 1
+        else ("they were set aside to choose the isovalue and count")
+    )
+    if group.low == group.high:
+        return f"{told} as {side}; if that value means that nothing is there, --ignore {_pasted(group.low, histogram)}"
+    return f"{told} as {side}; if they are data, give the isovalue with -i"
+
+
+def _beside_a_percentile(histogram: Histogram) -> tuple[str, ...]:
+    """Warnings for groups that lie apart and are large enough to move a percentile, which counts them."""
+    return tuple(
+        f"{_share(group, histogram)}, far from all others, and percentiles count them"
+        + (f"; --ignore {_pasted(group.low, histogram)} leaves them out" if group.low == group.high else "")
+        for group in histogram.apart
+        if group.count >= _SHARE_THAT_MOVES * histogram.finite
+    )
+
+
+def _share(group: Apart, histogram: Histogram) -> str:
+    share = 100 * group.count / len(histogram.samples)
+    if group.low == group.high:
+        values = _pasted(group.low, histogram)
+    else:
+        values = "from {} to {}".format(*legible(group.low, group.high))
+    noun = "sample is" if group.count == 1 else "samples are"
+    return f"{group.count:,} {noun} {values} ({share:.2g} % of all)"
+
+
+def _pasted(value: float, histogram: Histogram) -> str:
+    """A sample's value as short as its type allows, to be pasted into a command."""
+    if histogram.samples.dtype == np.float32 and histogram.slope == 1 and histogram.intercept == 0:
+        return str(np.float32(value)).removesuffix(".0")
+    return exact(value)
 
 
 def is_two_valued(histogram: Histogram) -> bool:
-    """Whether the finite samples take exactly two values."""
+    """Whether the finite samples that are not set aside take exactly two values."""
     occupied = np.flatnonzero(histogram.counts)
     if len(occupied) != 2 or occupied[0] != 0 or occupied[-1] != len(histogram.counts) - 1:
         return False
-    samples = histogram.samples
-    ends = int(np.count_nonzero(samples == histogram.minimum)) + int(np.count_nonzero(samples == histogram.maximum))
-    return histogram.exact or ends == histogram.finite
+    if histogram.exact:
+        return True
+    ends = histogram.equal_to(histogram.low) + histogram.equal_to(histogram.high)
+    return ends == int(histogram.counts.sum())
 
 
 def otsu(histogram: Histogram) -> float:
-    """Otsu's threshold in the stored scale, halfway between the two classes' nearest occupied bins."""
+    """Otsu's threshold, scaled, halfway between the two classes' nearest occupied bins.
+
+    The cut is sought in numbers of bins, which no sample is too large or too small for.
+    """
     occupied = np.flatnonzero(histogram.counts)
     weights = histogram.counts[occupied].astype(np.float64)
-    values = _values(histogram, occupied)
+    places = occupied.astype(np.float64)
     below = np.cumsum(weights)[:-1]
     above = weights.sum() - below
-    sums = np.cumsum(weights * values)
+    sums = np.cumsum(weights * places)
     total = sums[-1]
     between = below * above * (sums[:-1] / below - (total - sums[:-1]) / above) ** 2
     cut = int(np.argmax(between))
-    if histogram.exact:
-        return float(values[cut] + values[cut + 1]) / 2
-    upper_edge = histogram.minimum + (occupied[cut] + 1) * histogram.width
-    lower_edge = histogram.minimum + occupied[cut + 1] * histogram.width
-    return float(upper_edge + lower_edge) / 2
-
-
-def _values(histogram: Histogram, bins: npt.NDArray[np.intp]) -> npt.NDArray[np.float64]:
-    middle = 0.0 if histogram.exact else 0.5
-    values: npt.NDArray[np.float64] = (bins + middle) * np.float64(histogram.width) + histogram.minimum
-    return values
+    end = 0 if histogram.exact else 1
+    ends = (histogram.scaled(histogram.edge(float(place))) for place in (occupied[cut] + end, occupied[cut + 1]))
+    lowest = (histogram.kept_range or (0.0, 0.0))[0]
+    return max(_middle(*sorted(ends)), math.nextafter(lowest, math.inf))
 
 
 def percentile(histogram: Histogram, percent: float) -> float:
-    """The stored value below which `percent` of the finite samples lie, to the bin of a bin.
+    """The value below which `percent` of the finite samples lie, scaled: exactly what numpy.percentile gives.
 
-    With a negative slope the percentile is counted from the other end, so that it holds for the values.
+    Between two samples it is interpolated linearly (method 7 of Hyndman, Fan, "Sample Quantiles in Statistical
+    Packages", The American Statistician 50(4), 1996).
     """
-    share = percent / 100 if histogram.slope > 0 else 1 - percent / 100
-    rank = min(int(share * histogram.finite), histogram.finite - 1)
-    bin_ = _bin_of_rank(histogram.counts, rank)
-    if histogram.exact:
-        return histogram.minimum + bin_
-    # A sample at the edge of a bin may be counted on either side of it: half a bin more holds it for certain.
-    low = max(histogram.minimum, histogram.minimum + (bin_ - 0.5) * histogram.width)
-    high = min(histogram.maximum, histogram.minimum + (bin_ + 1.5) * histogram.width)
-    finer = _counts(histogram, low, high, len(histogram.counts))
-    below = math.nextafter(low, -math.inf)
-    before = int(_counts(histogram, histogram.minimum, below, 1)[0]) if low > histogram.minimum else 0
-    return low + (_bin_of_rank(finer, rank - before) + 0.5) * (high - low) / len(finer)
-
-
-def _counts(histogram: Histogram, low: float, high: float, bins: int) -> npt.NDArray[np.uint64]:
-    return _kernels.histogram(histogram.samples, low, high, bins, histogram.threads)
-
-
-def _bin_of_rank(counts: npt.NDArray[np.uint64], rank: int) -> int:
-    """The bin that holds the sample of this rank."""
-    return int(np.searchsorted(np.cumsum(counts), rank, side="right"))
+    last = histogram.finite - 1
+    position = last * (percent / 100)
+    rank = min(int(position), last)
+    share = position - rank
+    if histogram.slope > 0:
+        before, after = histogram.at_rank(rank)
+    else:  # the values fall where the samples rise
+        after, before = histogram.at_rank(max(last - rank - 1, 0))
+        before = after if rank == last else before
+    low, high = histogram.scaled(before), histogram.scaled(after)
+    step = high - low
+    if not share:
+        return low
+    if not math.isfinite(step):
+        return low * (1 - share) + high * share
+    # As numpy rounds it: from the nearer end.
+    return high - step * (1 - share) if share >= 0.5 else low + step * share
 
 
 def suggestions(histogram: Histogram) -> tuple[Chosen, ...]:

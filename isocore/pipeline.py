@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
+from isocore.digits import exact, legible
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
@@ -71,6 +72,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     message="" if measured.triangles else _emptiness(chosen.isovalue, known),
                     warnings=source.warnings
                     + known.warnings
+                    + chosen.warnings
                     + found.warnings
                     + format_warnings(job)
                     + _border(measured, known)
@@ -153,8 +155,13 @@ def _outlook(job: Job) -> Outlook:
 
 
 def _emptiness(isovalue: float, known: FieldFacts) -> str:
-    low, high = known.range or (float("nan"), float("nan"))
-    return f"no surface at isovalue {isovalue:g}; the samples lie between {low:g} and {high:g}"
+    if known.range is None:
+        return f"no surface at isovalue {exact(isovalue)}; no sample is finite"
+    low, high = known.range
+    if low == high:
+        return f"no surface at isovalue {exact(isovalue)}; every sample is {exact(low)}"
+    value, low_text, high_text = legible(isovalue, low, high)
+    return f"no surface at isovalue {value}; the samples lie between {low_text} and {high_text}"
 
 
 def _border(measured: Measurements, known: FieldFacts) -> tuple[str, ...]:

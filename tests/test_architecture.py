@@ -16,9 +16,11 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "choices", "volume", "cell_mesh", "surface", "job", "extraction", "measurements"}
+NOUNS = {"errors", "version", "digits", "choices"} | {
+    "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
+}  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
-FIELD_ROOMS = {"histogram", "isovalue", "extrema", "field_facts"}
+FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts"}
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
 #: What becomes of coordinates on their way to the file.
@@ -32,7 +34,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "_kernels": set(),
     "errors": set(),
     "version": set(),
-    "choices": {"errors"},
+    "digits": set(),
+    "choices": {"digits", "errors"},
     "whole_file": {"errors"},
     "volume": {"errors"},
     "cell_mesh": {"errors"},
@@ -45,13 +48,14 @@ MAY_IMPORT: dict[str, set[str]] = {
     "ambiguities": {"volume"} | KERNELS,
     "readers": {"errors", "volume", "cell_mesh"} | KERNELS,
     "readers/options": set(),
-    "histogram": {"cell_mesh", "volume"} | KERNELS,
-    "isovalue": {"choices", "errors", "histogram"} | KERNELS,
+    "apart": KERNELS,
+    "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,
+    "isovalue": {"apart", "choices", "digits", "errors", "histogram"} | KERNELS,
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
-    | {"writers/read_back"}
+    | {"digits", "writers/read_back"}
     | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},

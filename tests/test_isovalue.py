@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -30,27 +30,58 @@ def test_range_and_counts_are_numpys(values: npt.NDArray[np.generic]) -> None:
     found = histogram(source, threads=2)
     finite = source.samples[np.isfinite(source.samples)]
     assert found.nonfinite == source.samples.size - finite.size
-    assert int(found.counts.sum()) == finite.size
+    assert int(found.counts.sum()) + sum(group.count for group in found.apart) == finite.size
     if finite.size:
         assert found.range == (float(finite.min()), float(finite.max()))
 
 
-@given(hnp.arrays("float32", 64, elements=st.floats(-100, 100, width=32)), st.integers(0, 100))
-def test_a_percentile_has_its_share_below(values: npt.NDArray[np.float32], percent: int) -> None:
-    """Within a bin of a bin of the exact one."""
-    found = percentile(histogram(volume(values)), percent)
-    ordered = np.sort(values)
-    exact = ordered[min(int(percent / 100 * 64), 63)]
-    assert abs(found - exact) <= (ordered[-1] - ordered[0]) / 4096**2 + 1e-5
+def spread_samples(name: str) -> st.SearchStrategy[npt.NDArray[np.generic]]:
+    """Samples of a type over all its magnitudes: its own extremes, tiny ones, heaps of equal ones."""
+    if name.startswith("float"):
+        width = 32 if name == "float32" else 64
+        elements: st.SearchStrategy[float] = st.floats(width=width, allow_nan=False, allow_infinity=False)
+        elements |= st.tuples(st.floats(-9, 9, width=32), st.integers(-30, 30)).map(
+            lambda pair: float(np.dtype(name).type(pair[0] * 10.0 ** pair[1]))
+        )
+        elements |= st.sampled_from([0.0, -0.0, 1.0, 1e10, -1e20])
+    else:
+        ends = np.iinfo(name)
+        elements = st.integers(int(ends.min), int(ends.max)) | st.integers(0, 5)
+    return hnp.arrays(name, st.integers(2, 60).map(lambda n: 4 * n), elements=elements)
 
 
-def test_a_percentile_is_found_at_the_edge_of_a_bin() -> None:
-    """Samples one rounding below the edge between two of the coarse bins, and exactly on it."""
-    for middle in (-3.345521e-19, 0.0, 3.345521e-19):
-        values = np.full(64, middle, np.float32)
-        values[0], values[-1] = -99, 99
-        for percent in (2, 50, 98):
-            assert percentile(histogram(volume(values)), percent) == pytest.approx(0, abs=198 / 4096**2)
+@given(
+    st.sampled_from(TYPES).flatmap(spread_samples),
+    st.floats(0, 100) | st.integers(0, 100).map(float),
+    st.sampled_from([(1.0, 0.0), (2.008, -7.5), (-0.25, 3.0)]),
+)
+def test_a_percentile_is_numpys(values: npt.NDArray[np.generic], percent: float, scale: tuple[float, float]) -> None:
+    """To the last bit, whatever the type, the range, and the sign of the slope."""
+    source = volume(values, slope=scale[0], intercept=scale[1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = scale[0] * source.samples.astype(np.float64).ravel() + scale[1]
+        assume(np.isfinite(scaled).all())
+        wanted = float(np.percentile(scaled, percent))
+    found = percentile(histogram(source, threads=2), percent)
+    if np.isfinite(wanted):
+        assert found == wanted
+    else:  # numpy's difference of two samples is too large
+        assert scaled.min() <= found <= scaled.max()
+
+
+@pytest.mark.parametrize("outlier", [1e6, 1e10, -1e20, 1e30, float(np.finfo(np.float32).max)])
+def test_one_outlier_moves_no_percentile(outlier: float) -> None:
+    """One wild voxel in 4,096: the 90th percentile is what numpy says of all samples."""
+    values = np.random.default_rng(0).normal(size=4096).astype(np.float32)
+    values[0] = outlier
+    assert percentile(histogram(volume(values)), 90) == np.percentile(values.astype(np.float64), 90)
+
+
+def test_a_percentile_leaves_samples_out_that_are_not_finite() -> None:
+    """NaN of either sign and both infinities."""
+    values = np.array([3, 1, np.nan, 2, -np.nan, np.inf, 4, -np.inf], np.float32)
+    spread = histogram(volume(values))
+    assert [percentile(spread, percent) for percent in (0, 50, 100)] == [1.0, 2.5, 4.0]
 
 
 def test_otsu_separates_two_heaps() -> None:
@@ -80,18 +111,25 @@ def test_two_values_are_cut_in_the_middle() -> None:
     assert not is_two_valued(histogram(volume(np.array([0.0, 1.0, 1e-9, 1.0] * 4))))
 
 
-def test_a_constant_volume_offers_no_isovalue() -> None:
-    """The message says what every sample is; a given number is taken all the same."""
-    spread = histogram(volume(np.full(16, 5, np.uint8)))
-    with pytest.raises(FieldError, match="every sample is 5"):
-        choose(Auto(), spread)
+@pytest.mark.parametrize(("value", "isovalue"), [(0, 0.5), (5, 2.5), (-4, -2)])
+@pytest.mark.parametrize("choice", [Auto(), Otsu()])
+def test_a_constant_volume_is_taken_for_a_mask(value: int, isovalue: float, choice: Auto | Otsu) -> None:
+    """An empty mask has its isovalue where any mask has it; a given number is taken all the same."""
+    spread = histogram(volume(np.full(16, value, np.int8)))
+    chosen = choose(choice, spread)
+    assert (chosen.isovalue, chosen.why) == (isovalue, f"every sample is {value}, so none divides them")
     assert choose(Number(3.5, "3.5"), spread).isovalue == 3.5
 
 
 def test_a_volume_without_a_finite_sample_says_so() -> None:
     """Rather than NaN."""
-    with pytest.raises(FieldError, match="no finite sample"):
-        choose(Otsu(), histogram(volume(np.full(16, np.nan))))
+    assert choose(Otsu(), histogram(volume(np.full(16, np.nan)))).why.startswith("no sample is finite")
+
+
+def test_an_isovalue_is_a_finite_number() -> None:
+    """Where the slope takes the samples beyond all doubles, the choice is refused."""
+    with pytest.raises(FieldError, match="p50 is no finite number"):
+        choose(Percentile(50, "p50"), histogram(volume(np.linspace(1e307, 1e308, 16), slope=1e10)))
 
 
 def test_ranges_are_spread_and_doubles_dropped() -> None:
@@ -100,6 +138,32 @@ def test_ranges_are_spread_and_doubles_dropped() -> None:
     assert [str(choice) for choice in found] == ["0", "0.25", "0.5", "0.75", "1", "otsu", "p99.5"]
     assert found[1:2] + found[-2:] == (Number(0.25, "0.25"), Otsu(), Percentile(99.5, "p99.5"))
     assert parse_choices(()) == (Auto(),)
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("101325:101325.0001:3", ["101325", "101325.00005", "101325.0001"]),
+        ("614454275.5:614454276.5:2", ["614454275.5", "614454276.5"]),
+        ("0.1:0.3:3", ["0.1", "0.2", "0.3"]),
+        ("3:-3:4", ["3", "1", "-1", "-3"]),
+        ("0:1:4", ["0", "0.3333333333333333", "0.6666666666666666", "1"]),
+        ("1e300:1.5e300:2", ["1e+300", "1.5e+300"]),
+        ("-1.7e308:1.7e308:3", ["-1.7e+308", "0", "1.7e+308"]),
+    ],
+)
+def test_a_range_keeps_all_digits(text: str, names: list[str]) -> None:
+    """Each number is the one that is meant, and its name reads back as the number."""
+    choices = parse_choices((text,))
+    assert [str(choice) for choice in choices] == names
+    assert [parse_choice(name) for name in names] == list(choices)
+
+
+@pytest.mark.parametrize("text", ["1:1:3", "1:1.0000000000000002:3"])
+def test_a_range_of_equal_numbers_is_refused(text: str) -> None:
+    """None is dropped without a word."""
+    with pytest.raises(OptionError, match="not all different"):
+        parse_choices((text,))
 
 
 @pytest.mark.parametrize("text", ["50", "50.0", "1e2", "otsu", "p090.5", "auto"])

@@ -16,6 +16,7 @@ from typing import TypeAlias, TypeVar
 from isocore import _kernels
 from isocore.benches.thinning import Table
 from isocore.choices import BLOCK_SIZES, parse_max_error
+from isocore.digits import exact
 from isocore.errors import FieldError
 from isocore.methods.climbing import DEFAULT_BLOCK_SIZE, Bound, bound_for
 from isocore.volume import Volume
@@ -61,7 +62,8 @@ class ClimbingBench:
 
     def table(self) -> Table:
         """The runs, one a row."""
-        title = f"Isovalue {self.isovalue:g}: marching cubes {self.mc_triangles:,} triangles, {self.mc_seconds:.4g} s"
+        cubes = f"marching cubes {self.mc_triangles:,} triangles, {self.mc_seconds:.4g} s"
+        title = f"Isovalue {exact(self.isovalue)}: {cubes}"
         return Table(title, _COLUMNS, tuple(self._row(run) for run in self.runs), _LEAVING)
 
     def _row(self, run: Run) -> tuple[str | int | float, ...]:
@@ -96,7 +98,7 @@ def volume_bench(
 
     mc_seconds, mc_triangles = _median_of(march, repeats)
     if mc_triangles == 0:
-        raise FieldError(f"isovalue {isovalue:g} draws no surface; choose another with -i")
+        raise FieldError(f"isovalue {exact(isovalue)} draws no surface; choose another with -i")
     plans = [(size, "none") for size in block_sizes]
     plans += [(DEFAULT_BLOCK_SIZE, text) for text in max_errors if text != "none"]
     runs = []

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any
 
+from isocore.digits import exact, legible
 from isocore.measurements import Measurements
 from isocore.report.record import BatchReport, RunReport
 
@@ -43,7 +44,7 @@ def summary_row(run: RunReport, name: str) -> tuple[str, ...]:
     surface, reference, ratio = run.surface, run.reference, run.ratio
     return (
         name,
-        run.asked.asked if run.isovalue is None else f"{run.isovalue:.6g}",
+        isovalue_text(run),
         count(surface and surface.triangles),
         count(reference and reference.triangles),
         number(ratio and ratio.triangles, ".2f"),
@@ -59,6 +60,16 @@ def watertight(surface: Measurements) -> str:
     if not surface.triangles or surface.watertight is None:
         return "-"
     return "yes" if surface.watertight else "no"
+
+
+def isovalue_text(run: RunReport) -> str:
+    """As it was given; one that was chosen by so many digits that it differs from the range's ends."""
+    if run.isovalue is None:
+        return run.asked.asked
+    if run.chosen == "given":
+        return exact(run.isovalue)
+    ends = (run.field and run.field.range) or ()
+    return legible(run.isovalue, *ends)[0]
 
 
 def own_seconds(run: RunReport) -> float | None:

@@ -63,6 +63,9 @@ double crossing(Sample a, Sample b, double isovalue) {
         if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
     }
     const double fa = static_cast<double>(a), fb = static_cast<double>(b);
+    if constexpr (std::is_same_v<Sample, double>) {  // only there a difference of two samples can be too large
+        if (!std::isfinite(fb - fa)) return crossing(a / 4, b / 4, isovalue / 4);
+    }
     const double t = (isovalue - fa) / (fb - fa), above = t > kClamp ? t : kClamp;  // a conditional move
     return above < 1 - kClamp ? above : 1 - kClamp;
 }

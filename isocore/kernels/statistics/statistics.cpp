@@ -1,5 +1,4 @@
 // statistics.cpp - Range and histogram of the samples, at memory speed where the type allows.
-// The samples are cut into chunks; a thread counts whole chunks, and counts add up to the same in any order.
 #include "statistics/statistics.hpp"
 
 #include <algorithm>
@@ -9,26 +8,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "common/parallel.hpp"
 #include "samples/sample_types.hpp"
+#include "statistics/chunks.hpp"
 
 namespace isocore {
 namespace {
 
 constexpr std::size_t kLanes = 32;
-
-std::size_t chunk_count(std::size_t count, int threads) {
-    const std::size_t wanted = threads < 1 ? 1 : static_cast<std::size_t>(threads);
-    return std::clamp<std::size_t>(count / 65536, 1, 4 * wanted);
-}
-
-// Runs work(chunk, first, last) over all chunks.
-template <class Work>
-void over_chunks(std::size_t count, std::size_t chunks, int threads, const Work& work) {
-    parallel_for(threads, chunks, [&](std::size_t chunk) {
-        work(chunk, count / chunks * chunk, chunk + 1 == chunks ? count : count / chunks * (chunk + 1));
-    });
-}
 
 // Lanes instead of one running minimum: independent columns that a compiler turns into vectors.
 template <class Sample>
@@ -62,6 +48,29 @@ Extent extent_of_chunk(const Sample* __restrict samples, std::size_t count) {
             static_cast<double>(*std::max_element(high, high + kLanes)), count - finite};
 }
 
+// The same for the samples from low to high; the comparison keeps NaN out.
+template <class Sample>
+Within within_of_chunk(const Sample* samples, std::size_t count, double low, double high) {
+    Within found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0};
+    double lowest[kLanes], highest[kLanes];
+    std::fill_n(lowest, kLanes, found.minimum);
+    std::fill_n(highest, kLanes, found.maximum);
+    const auto take = [&](std::size_t lane, double sample) {
+        const bool usable = sample >= low && sample <= high;
+        lowest[lane] = usable && sample < lowest[lane] ? sample : lowest[lane];
+        highest[lane] = usable && sample > highest[lane] ? sample : highest[lane];
+        found.count += usable ? 1 : 0;
+    };
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, static_cast<double>(samples[i + lane]));
+    }
+    for (; i < count; ++i) take(0, static_cast<double>(samples[i]));
+    found.minimum = *std::min_element(lowest, lowest + kLanes);
+    found.maximum = *std::max_element(highest, highest + kLanes);
+    return found;
+}
+
 // Four tables in turn: with one, a run of equal samples would load the same counter again right after it was stored,
 // and wait for the store each time.
 template <class Sample>
@@ -86,16 +95,24 @@ void count_exact(const Sample* samples, std::size_t count, std::int64_t low, std
     }
 }
 
-template <class Sample>
-void count_binned(const Sample* samples, std::size_t count, double low, double high, std::size_t bins,
+// kScaled: samples are multiplied by `unit` first. A range beyond the largest double, or so small that its inverse is,
+// is reckoned in another unit, a power of two.
+template <bool kScaled, class Sample>
+void count_binned(const Sample* samples, std::size_t count, double low, double high, double unit, std::size_t bins,
                   std::uint64_t* out) {
-    const double scale = high > low ? static_cast<double>(bins) / (high - low) : 0.0;
+    const double first = kScaled ? low * unit : low, range = kScaled ? high * unit - first : high - first;
+    const double scale = high > low ? static_cast<double>(bins) / range : 0.0;
     for (std::size_t i = 0; i < count; ++i) {
         const double sample = static_cast<double>(samples[i]);
         if (!(sample >= low && sample <= high)) continue;
-        const std::size_t bin = static_cast<std::size_t>((sample - low) * scale);
+        const std::size_t bin = static_cast<std::size_t>(((kScaled ? sample * unit : sample) - first) * scale);
         ++out[std::min(bin, bins - 1)];
     }
+}
+
+double unit_for(double low, double high) {
+    if (!std::isfinite(high - low)) return 0.5;
+    return high > low && high - low < 0x1p-960 ? 0x1p100 : 1.0;
 }
 
 template <class Sample>
@@ -125,6 +142,22 @@ Extent extent(const Sample* samples, std::size_t count, int threads) {
 }
 
 template <class Sample>
+Within extent_between(const Sample* samples, std::size_t count, double low, double high, int threads) {
+    const std::size_t chunks = chunk_count(count, threads);
+    std::vector<Within> parts(chunks);
+    over_chunks(count, chunks, threads, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        parts[chunk] = within_of_chunk(samples + first, last - first, low, high);
+    });
+    Within whole = parts[0];
+    for (std::size_t chunk = 1; chunk < chunks; ++chunk) {
+        whole.minimum = std::min(whole.minimum, parts[chunk].minimum);
+        whole.maximum = std::max(whole.maximum, parts[chunk].maximum);
+        whole.count += parts[chunk].count;
+    }
+    return whole;
+}
+
+template <class Sample>
 Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double low, double high, std::size_t bins,
                                int threads) {
     if (!(low <= high) || bins == 0) throw std::invalid_argument("a histogram needs low <= high and one bin or more");
@@ -138,7 +171,9 @@ Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double 
                                    parts[chunk].data());
             }
         }
-        count_binned(samples + first, last - first, low, high, bins, parts[chunk].data());
+        const double unit = unit_for(low, high);
+        const auto count_all = unit == 1.0 ? count_binned<false, Sample> : count_binned<true, Sample>;
+        count_all(samples + first, last - first, low, high, unit, bins, parts[chunk].data());
     });
     Array<std::uint64_t> counts(bins);
     std::fill(counts.begin(), counts.end(), 0U);
@@ -148,8 +183,9 @@ Array<std::uint64_t> histogram(const Sample* samples, std::size_t count, double 
     return counts;
 }
 
-#define ISOCORE_STATISTICS(Sample)                           \
-    template Extent extent(const Sample*, std::size_t, int); \
+#define ISOCORE_STATISTICS(Sample)                                                   \
+    template Extent extent(const Sample*, std::size_t, int);                         \
+    template Within extent_between(const Sample*, std::size_t, double, double, int); \
     template Array<std::uint64_t> histogram(const Sample*, std::size_t, double, double, std::size_t, int);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_STATISTICS)
 #undef ISOCORE_STATISTICS
