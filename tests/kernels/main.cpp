@@ -4,6 +4,7 @@
 void test_bits();
 void test_crossing();
 void test_lanes();
+void test_selection();
 void test_signs();
 void test_halvings();
 void test_facets();
@@ -20,6 +21,7 @@ int main() {
     test_bits();
     test_crossing();
     test_lanes();
+    test_selection();
     test_signs();
     test_halvings();
     test_facets();
