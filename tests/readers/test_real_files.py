@@ -20,12 +20,8 @@ from isocore.volume import Volume
 pytestmark = pytest.mark.skipif(not REAL_DATA.is_dir(), reason=f"no real data at {REAL_DATA}")
 
 WITH_HEADER = tuple(suffix for suffix in SEARCHED if suffix not in (".raw", ".raw.gz", ".vtu"))
-#: The reduced inputs in `cases` go wrong in ways that each has a README for; they are no part of this table.
-SCANS = sorted(
-    name
-    for path in REAL_DATA.rglob("*")
-    if suffix_of(path) in WITH_HEADER and not (name := path.relative_to(REAL_DATA).as_posix()).startswith("cases/")
-)
+FOUND = [path.relative_to(REAL_DATA) for path in REAL_DATA.rglob("*") if suffix_of(path) in WITH_HEADER]
+SCANS = sorted(path.as_posix() for path in FOUND)
 
 #: What is refused even with a volume chosen: the error, and what the message says, which was checked by hand.
 REFUSED: dict[str, tuple[type[IsocoreError], str]] = {
@@ -33,6 +29,13 @@ REFUSED: dict[str, tuple[type[IsocoreError], str]] = {
     "broken/nifti-rs-fuzz/crash-1.nii": (InputError, "no known size"),
     "broken/nifti-rs-fuzz/crash-ed7d46344d7efb3b9f0c374d66d2e02f66cc447d.nii": (InputError, "no known size"),
     "broken/not-nifti.nii": (InputError, "no known size"),
+    "cases/07-pointer-files/annex.nii.gz": (InputError, "is a git-annex pointer"),
+    "cases/07-pointer-files/lfs.nii.gz": (InputError, "is a git-lfs pointer"),
+    "cases/07-pointer-files/lfs.nrrd": (InputError, "is a git-lfs pointer"),
+    "cases/fuzz-12-small-files-much-work/axes.nrrd": (InputError, "counts 18,000 axes"),
+    "cases/fuzz-12-small-files-much-work/bz_more.nrrd": (InputError, "of bzip2 hold at most"),
+    "cases/fuzz-12-small-files-much-work/bz_skip.nrrd": (InputError, "check its byte skip"),
+    "cases/fuzz-12-small-files-much-work/num.nhdr": (InputError, "no x1.raw beside it"),
     "volumes/nibabel/analyze.hdr": (InputError, "no analyze.img beside it"),
     "volumes/nibabel/nifti1.hdr": (InputError, "no nifti1.img beside it"),
     "volumes/nibabel/nifti2.hdr": (InputError, "no nifti2.img beside it"),
@@ -78,6 +81,9 @@ REFUSED: dict[str, tuple[type[IsocoreError], str]] = {
 }
 READ = [scan for scan in SCANS if scan not in REFUSED]
 
+#: Its pixdim and its sform contradict each other, and the sform goes first.
+OWN_WAY = ("cases/fuzz-04-huge-spacing-html/b_huge.nii",)
+
 #: Files of several volumes, and which axis tells them apart.
 SEVERAL = {
     "volumes/nibabel/example4d.nii.gz": (2, 3),
@@ -118,7 +124,8 @@ def test_nifti_is_read_as_nibabel_reads_it(scan: str) -> None:
         factor = {1: 1000.0, 3: 0.001}.get(int(image.header["xyzt_units"]) & 7, 1.0)
         if not any("no orientation" in warning for warning in field.warnings):
             assert np.allclose(field.affine[:3], image.affine[:3] * factor, rtol=1e-6, atol=2e-6)
-        assert np.allclose(field.spacing, np.array(image.header.get_zooms()[:3]) * factor, rtol=1e-4)
+        if scan not in OWN_WAY:
+            assert np.allclose(field.spacing, np.array(image.header.get_zooms()[:3]) * factor, rtol=1e-4)
 
 
 @pytest.mark.parametrize(
