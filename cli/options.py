@@ -37,6 +37,7 @@ class Reading:
     offset: int | None
     merge_points: float | None
     keep_duplicates: bool
+    corners: bool
 
     def read_options(self) -> ReadOptions:
         """The same for a reader; a volume of "all" is spread by whoever plans the jobs."""
@@ -52,7 +53,9 @@ class Reading:
             origin=self.origin,
             byte_order=self.byte_order,
             offset=self.offset,
-            mesh=MeshOptions(merge_points=self.merge_points, keep_duplicates=self.keep_duplicates),
+            mesh=MeshOptions(
+                merge_points=self.merge_points, keep_duplicates=self.keep_duplicates, corners=self.corners
+            ),
         )
 
 
@@ -114,6 +117,7 @@ _READING_OPTIONS = (
         help="Meshes: join points within this distance, not only those at equal coordinates.",
     ),
     _input("--keep-duplicates", is_flag=True, help="Meshes: join no points."),
+    _input("--corners", is_flag=True, help="Meshes: read curved cells by their corners alone."),
     _input("--shape", type=Numbers(int), metavar="X,Y,Z", help="Raw: samples per axis, as 64,64,32; needed."),
     _input("--dtype", metavar="T", help="Raw: int8 to int64, uint8 to uint64, float32 or float64; needed."),
     _input(

@@ -17,13 +17,28 @@ class Connectivity:
 
     ghost_cells: left out, because the file marks them. joined_points: points that coincide with another and were
     joined with it. averaged_points: those that were left where the values of the joined points differ by more than
-    rounding, so that their mean was taken; largest_difference: by how much.
+    rounding, so that their mean was taken; largest_difference: by how much. divided_cells: curved ones, which were
+    divided into straight ones.
     """
 
     ghost_cells: int = 0
     joined_points: int = 0
     averaged_points: int = 0
     largest_difference: float = 0.0
+    divided_cells: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CurvedCells:
+    """Cells that were divided into straight ones, and how value and place run between their nodes.
+
+    nodes: (m, L) int32, points of the mesh. pairs: (e, 2) two of a cell's nodes that an edge of a straight cell joins.
+    weights: (e, L) float64, of the values (or the places) of all nodes of a cell for that half way between a pair.
+    """
+
+    nodes: npt.NDArray[np.int32]
+    pairs: npt.NDArray[np.intp]
+    weights: npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +54,7 @@ class CellMesh:
     cell_counts: cells of the file by type, before wedges and pyramids were split.
     warnings: what the reader wants its user to know.
     connectivity: what was left out and joined.
+    curved: cells that were divided; a surface's vertices follow them between their nodes.
     """
 
     points: npt.NDArray[np.float64]
@@ -50,6 +66,7 @@ class CellMesh:
     cell_counts: dict[str, int] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     connectivity: Connectivity = Connectivity()
+    curved: tuple[CurvedCells, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.points)

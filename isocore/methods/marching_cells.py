@@ -13,6 +13,7 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
+from isocore.methods.bending import bend
 from isocore.surface import Point, Surface
 
 # float32 is enough while its steps are below this part of a cell: some cells are smaller than the mean one, and
@@ -24,17 +25,22 @@ _CAP = "--cap closes volumes only: a mesh's surface stays open where it meets th
 
 def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     """Scan all cells for every isovalue."""
-    warnings, single = mesh_warnings(options), single_precision(mesh)
+    warnings, single, edges = mesh_warnings(options), single_precision(mesh), needs_edges(mesh, options)
 
     def extract(isovalue: float) -> Extraction:
         marched = _kernels.marching_cells(
-            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single, bool(options.normals)
+            mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single, edges
         )
         surface, seconds = mesh_surface(mesh, marched, isovalue, options)
         search = Search(cells=mesh.cells, visited=mesh.cells, intersected=marched.intersected)
         return Extraction(surface, Findings(search=search), warnings, seconds)
 
     return extract
+
+
+def needs_edges(mesh: CellMesh, options: Options) -> bool:
+    """Is the edge that each vertex lies on asked of the kernel? For normals, and to follow curved cells."""
+    return bool(options.normals or mesh.curved)
 
 
 def mesh_warnings(options: Options) -> tuple[str, ...]:
@@ -63,11 +69,14 @@ def mesh_surface(
 
     And the seconds that its normals took, where they are asked for.
     """
+    vertices = found.vertices
+    if mesh.curved:
+        vertices = bend(mesh, found.edges, vertices, found.triangles, isovalue)
     normals, start = None, perf_counter()
     if options.normals:
         cells = (mesh.points, mesh.tets, mesh.hexes, mesh.values)
         normals = _kernels.mesh_normals(
-            *cells, isovalue, found.edges, found.vertices, found.triangles, options.threads
+            *cells, isovalue, found.edges, vertices, found.triangles, options.threads
         )
     seconds = perf_counter() - start
-    return Surface(found.vertices, found.triangles, normals, unit=mesh.unit), seconds
+    return Surface(vertices, found.triangles, normals, unit=mesh.unit), seconds

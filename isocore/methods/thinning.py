@@ -16,7 +16,7 @@ from isocore.extraction import Extract, Extraction, Field, Findings, Outlook, Se
 from isocore.job import Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import AGAIN, holds_ranges, load_index
-from isocore.methods.marching_cells import mesh_surface, mesh_warnings, single_precision
+from isocore.methods.marching_cells import mesh_surface, mesh_warnings, needs_edges, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
 
@@ -36,7 +36,7 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
     index, ready, warnings = _index_of(mesh, outlook)
-    with_edges = bool(options.normals)
+    with_edges = needs_edges(mesh, options)
     single, foreign = single_precision(mesh), outlook.index is not None
 
     def extract(isovalue: float) -> Extraction:

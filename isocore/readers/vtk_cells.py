@@ -3,81 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import FieldError, InputError
+from isocore.readers.vtk_types import HIGHER, NAMES, REFUSED, SOLID, Kind
 
-Shape = Literal["tet", "hex", "wedge", "pyramid"]
-CORNERS: dict[Shape, int] = {"tet": 4, "hex": 8, "wedge": 6, "pyramid": 5}
-
-
-@dataclass(frozen=True, slots=True)
-class Kind:
-    """A cell type that fills space. nodes: how many points it has, 0 where that depends on its degree.
-
-    order: where its corners stand in the file, if they are not its first points in VTK's order of a hexahedron.
-    """
-
-    name: str
-    shape: Shape
-    nodes: int
-    order: tuple[int, ...] = ()
-
-    @property
-    def corners(self) -> int:
-        """How many of its points are corners, which come first."""
-        return CORNERS[self.shape]
-
-    @property
-    def straight(self) -> bool:
-        return self.nodes == self.corners
-
-
-SOLID = {
-    10: Kind("tetrahedra", "tet", 4),
-    11: Kind("voxels", "hex", 8, (0, 1, 3, 2, 4, 5, 7, 6)),
-    12: Kind("hexahedra", "hex", 8),
-    13: Kind("wedges", "wedge", 6),
-    14: Kind("pyramids", "pyramid", 5),
-    24: Kind("quadratic tetrahedra", "tet", 10),
-    25: Kind("quadratic hexahedra", "hex", 20),
-    26: Kind("quadratic wedges", "wedge", 15),
-    27: Kind("quadratic pyramids", "pyramid", 13),
-    29: Kind("triquadratic hexahedra", "hex", 27),
-    31: Kind("quadratic-linear wedges", "wedge", 12),
-    32: Kind("biquadratic wedges", "wedge", 18),
-    33: Kind("biquadratic hexahedra", "hex", 24),
-    37: Kind("triquadratic pyramids", "pyramid", 19),
-}
-#: Points, lines and surfaces: they enclose nothing an isosurface could run through.
-FLAT = {
-    0: "empty cells", 1: "vertices", 2: "vertices", 3: "lines", 4: "polylines", 5: "triangles",
-    6: "triangle strips", 7: "polygons", 8: "pixels", 9: "quads", 21: "quadratic lines",
-    22: "quadratic triangles", 23: "quadratic quads", 28: "biquadratic quads", 30: "quadratic-linear quads",
-    34: "biquadratic triangles", 35: "cubic lines", 36: "quadratic polygons", 51: "parametric curves",
-    52: "parametric surfaces", 53: "parametric triangles", 54: "parametric quads", 60: "higher-order lines",
-    61: "higher-order triangles", 62: "higher-order quads", 63: "higher-order polygons",
-    68: "Lagrange curves", 69: "Lagrange triangles", 70: "Lagrange quads", 75: "Bezier curves",
-    76: "Bezier triangles", 77: "Bezier quads",
-}  # fmt: skip
-#: Cells of any degree: a node more on every edge for each degree above the first, corners first.
-HIGHER: dict[int, Kind] = {
-    71: Kind("Lagrange tetrahedra", "tet", 0), 72: Kind("Lagrange hexahedra", "hex", 0),
-    73: Kind("Lagrange wedges", "wedge", 0), 74: Kind("Lagrange pyramids", "pyramid", 0),
-    78: Kind("Bezier tetrahedra", "tet", 0), 79: Kind("Bezier hexahedra", "hex", 0),
-    80: Kind("Bezier wedges", "wedge", 0), 81: Kind("Bezier pyramids", "pyramid", 0),
-}  # fmt: skip
-#: Cells known by their faces, which vtk_faces.py finds.
-FACETED = {15: "pentagonal prisms", 16: "hexagonal prisms", 41: "convex point sets", 42: "polyhedra"}
-REFUSED = {
-    55: "parametric tetrahedra", 56: "parametric hexahedra", 64: "higher-order tetrahedra",
-    65: "higher-order wedges", 66: "higher-order pyramids", 67: "higher-order hexahedra",
-}  # fmt: skip
-#: All types that are read or left out, by name.
-NAMES = {number: kind.name for number, kind in (SOLID | HIGHER).items()} | FACETED | FLAT
+_FIRST_BEZIER = 75
+_HIGHEST = 1 << 10  # degree that is believed
 _CHUNK = 1 << 16  # rows narrowed at a time: they stay in the cache
 
 Integers = npt.NDArray[Any]
@@ -87,7 +22,8 @@ Integers = npt.NDArray[Any]
 class CellArrays:
     """Types, offsets (where each cell ends) and connectivity, checked; `starts` has a last entry for the end.
 
-    keep: (c,) bool, cells that count, or None where all do.
+    keep: (c,) bool, cells that count, or None where all do. degrees: (c, 3) of Lagrange and Bezier cells along their
+    axes, or None. old: the file is older than version 2.1.
     """
 
     path: str
@@ -95,11 +31,11 @@ class CellArrays:
     starts: npt.NDArray[np.int64]
     connectivity: Integers
     keep: npt.NDArray[np.bool_] | None = None
+    degrees: npt.NDArray[Any] | None = None
+    old: bool = False
 
     @classmethod
-    def checked(
-        cls, path: str, arrays: tuple[Integers, Integers, Integers], keep: npt.NDArray[np.bool_] | None = None
-    ) -> CellArrays:
+    def checked(cls, path: str, arrays: tuple[Integers, Integers, Integers]) -> CellArrays:
         """From (types, offsets, connectivity), in any integer type and byte order."""
         types, offsets, connectivity = arrays
         for name, array in (("types", types), ("offsets", offsets), ("connectivity", connectivity)):
@@ -107,7 +43,7 @@ class CellArrays:
                 raise InputError(
                     f"{path}: array {name!r} holds {array.dtype.name} numbers, not integers; write it again"
                 )
-        return cls(path, types, _starts(path, offsets, connectivity), connectivity, keep)
+        return cls(path, types, _starts(path, offsets, connectivity), connectivity)
 
     def where(self, number: int) -> npt.NDArray[np.intp] | slice:
         """The cells of one type that count: a slice where they stand together."""
@@ -121,17 +57,31 @@ class CellArrays:
 class Block:
     """Cells of one type and one number of points. cells: (m, k) int32. numbers: which cells of the piece they are.
 
-    degrees: of Lagrange and Bezier cells along their axes, where the file says.
+    number: of the type. degrees: of Lagrange and Bezier cells along their axes, where the file says.
+    old: the nodes of Lagrange hexahedra stand as in files before version 2.1.
     """
 
     kind: Kind
     cells: npt.NDArray[np.int32]
     numbers: npt.NDArray[np.intp] | slice
+    number: int
     degrees: tuple[int, int, int] | None = None
+    old: bool = False
+
+    @property
+    def bezier(self) -> bool:
+        """Are its points control points, which the cell need not pass through?"""
+        return self.number >= _FIRST_BEZIER
 
     @property
     def corners(self) -> npt.NDArray[np.int32]:
         return self.cells[:, : self.kind.corners]
+
+
+def by_corners(block: Block) -> Block:
+    """The straight cells between the corners."""
+    kind = replace(block.kind, nodes=block.kind.corners)
+    return replace(block, kind=kind, cells=np.ascontiguousarray(block.corners))
 
 
 def count_cells(path: str, types: Integers) -> dict[int, int]:
@@ -170,7 +120,7 @@ def blocks(arrays: CellArrays, counts: dict[int, int], points: int) -> list[Bloc
             whole = len(counts) == 1 and arrays.keep is None
             numbers = slice(0, len(arrays.types)) if whole else arrays.where(number)
             _check_sizes(arrays, kind, numbers)
-            found.append(Block(kind, narrowed(arrays, numbers, kind, points), numbers))
+            found.append(Block(kind, narrowed(arrays, numbers, kind, points), numbers, number))
         elif number in HIGHER:
             found += _higher(arrays, number, points)
     return found
@@ -180,15 +130,25 @@ def _higher(arrays: CellArrays, number: int, points: int) -> list[Block]:
     """The cells of a type of any degree, by how many points they have."""
     every = np.arange(len(arrays.types))[arrays.where(number)]
     sizes = arrays.starts[every + 1] - arrays.starts[every]
-    order = np.argsort(sizes, kind="stable")
+    alike = [sizes] if arrays.degrees is None else [*arrays.degrees[every].T, sizes]
+    order = np.lexsort(alike)
+    changes = np.logical_or.reduce([np.diff(key[order]) != 0 for key in alike])
     found = []
-    for numbers in np.split(every[order], np.flatnonzero(np.diff(sizes[order])) + 1):
+    for numbers in np.split(every[order], np.flatnonzero(changes) + 1):
         size = int(arrays.starts[numbers[0] + 1] - arrays.starts[numbers[0]])
         kind = replace(HIGHER[number], nodes=size)
         if size < kind.corners:
             raise InputError(f"{arrays.path}: one of its {kind.name} has {size:,} points, too few; copy it again")
-        found.append(Block(kind, narrowed(arrays, numbers, kind, points), numbers))
+        degrees = None if arrays.degrees is None else _degrees(arrays.degrees[numbers[0]])
+        cells = narrowed(arrays, numbers, kind, points)
+        found.append(Block(kind, cells, numbers, number, degrees, arrays.old))
     return found
+
+
+def _degrees(row: npt.NDArray[Any]) -> tuple[int, int, int] | None:
+    """Three degrees from 1 on, or None."""
+    p, q, r = (int(degree) if 1 <= degree <= _HIGHEST else 0 for degree in row.tolist())
+    return (p, q, r) if p and q and r else None
 
 
 def _starts(path: str, offsets: Integers, connectivity: Integers) -> npt.NDArray[np.int64]:

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import FieldError
-from isocore.readers.vtk_cells import FACETED, CellArrays
+from isocore.readers.vtk_cells import CellArrays
 from isocore.readers.vtk_faces import Faces, ragged
+from isocore.readers.vtk_types import FACETED
 
 CONVEX_SET = 41
 _MOST_POINTS = 32  # a plane is known by one bit for each point in it

@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
-from isocore.readers.vtk_cells import FACETED, CellArrays, narrow
+from isocore.readers.vtk_cells import CellArrays, narrow
+from isocore.readers.vtk_types import FACETED
 
 #: Faces of the prisms, in VTK's order of their points.
 PRISMS = {

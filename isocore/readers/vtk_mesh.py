@@ -18,11 +18,13 @@ from isocore.cell_mesh import CellMesh, Connectivity
 from isocore.errors import FieldError
 from isocore.readers.cell_splitting import SplitCells, split_cells
 from isocore.readers.options import MeshOptions
-from isocore.readers.vtk_cells import CORNERS, Shape
+from isocore.readers.vtk_cells import by_corners
 from isocore.readers.vtk_centres import SplitFaces, split_at_centres
+from isocore.readers.vtk_division import Divided, divided
 from isocore.readers.vtk_fields import FieldInfo, averaged
 from isocore.readers.vtk_joining import joined_values, joining
 from isocore.readers.vtk_pieces import Part, PieceData, checked, renumbered, together, used_points
+from isocore.readers.vtk_types import CORNERS
 from isocore.readers.vtk_warnings import cell_warnings, corner_warnings, joining_warnings, named, splitting_warnings
 
 
@@ -43,11 +45,14 @@ def assembled(
     ghosts = sum(part.ghosts for part in parts)
     warnings = cell_warnings(path, counts, ghosts)
     whole, found = _hung_together(together(path, parts), field, options, ghosts)
-    points, values, split, turned = _split(path, whole)
-    warnings += corner_warnings(whole.blocks)
+    blocks = [by_corners(block) for block in whole.blocks] if options.corners else whole.blocks
+    shapes = divided(path, blocks, whole.points, whole.values, whole.weights)
+    points, values, split, turned = _split(path, whole, shapes)
+    warnings += corner_warnings(whole.blocks, shapes.left, options.corners)
     warnings += splitting_warnings(counts, split, turned)
     if not len(split.tets) and not len(split.hexes):
         raise FieldError(f"{path}: each of its {split.collapsed:,} cells is collapsed to nothing; write it again")
+    found = replace(found, divided_cells=sum(len(cells.nodes) for cells in shapes.curved))
     warnings += joining_warnings(found, field, options.merge_points)
     if len(parts) > 1 and options.keep_duplicates:
         warnings.append(f"the points of {len(parts)} pieces were not joined: the surface has seams there")
@@ -65,6 +70,7 @@ def assembled(
         cell_counts=named(counts),
         warnings=tuple(warnings),
         connectivity=found,
+        curved=tuple(shapes.curved),
     )
 
 
@@ -81,7 +87,8 @@ def _hung_together(
         if not of_cells:
             found = joined_values(by, part.values, used_points(part))
             values, differing, largest = found.values, found.differing, found.largest
-        part = replace(renumbered(part, by.number), points=part.points[by.first], values=values)
+        weights = None if part.weights is None else part.weights[by.first]
+        part = replace(renumbered(part, by.number), points=part.points[by.first], values=values, weights=weights)
     if of_cells:
         part = replace(part, values=_at_points(part))
     return part, Connectivity(
@@ -99,32 +106,28 @@ def _at_points(part: Part) -> npt.NDArray[Any]:
 
 
 def _split(
-    path: str, part: Part
+    path: str, part: Part, shapes: Divided
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[Any], SplitCells, tuple[int, int]]:
     """Points, values, and cells as tetrahedra and hexahedra; how many list faces inside out, and the first of them."""
     centred: list[SplitFaces] = []
-    count = len(part.points)
+    count = len(shapes.points)
     for faces in part.faces:
-        centred.append(split_at_centres(path, faces, part.points, part.values, count))
+        centred.append(split_at_centres(path, faces, shapes.points, shapes.values, count))
         count += len(faces.counts)
     if count > np.iinfo(np.int32).max:
         raise FieldError(f"{path}: holds more than 2,147,483,647 points; cut it into several files")
-    tets, hexes, wedges, pyramids = (_cells(part, shape) for shape in ("tet", "hex", "wedge", "pyramid"))
+    tets, hexes, wedges, pyramids = (
+        _one([*shapes.cells[shape]] or [np.empty((0, corners), np.int32)]) for shape, corners in CORNERS.items()
+    )
     tets = _one([tets, *(split.tets for split in centred)])
     quads = _one([np.empty((0, 4), np.int32), *(split.quads for split in centred)])
     turned = [split for split in centred if split.turned]
     return (
-        _one([part.points, *(split.centres for split in centred)]),
-        _one([part.values, *(split.values for split in centred)]),
+        _one([shapes.points, *(split.centres for split in centred)]),
+        _one([shapes.values, *(split.values for split in centred)]),
         split_cells(tets, hexes, wedges, pyramids, quads),
         (sum(split.turned for split in turned), turned[0].first if turned else -1),
     )
-
-
-def _cells(part: Part, shape: Shape) -> npt.NDArray[np.int32]:
-    """(m, k) all cells of one shape, by their corners."""
-    found = [np.ascontiguousarray(block.corners) for block in part.blocks if block.kind.shape == shape]
-    return _one(found) if found else np.empty((0, CORNERS[shape]), np.int32)
 
 
 def _one(arrays: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:

@@ -9,12 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import FieldError, InputError
-from isocore.readers.vtk_cells import FACETED, Block, CellArrays, blocks, count_cells
+from isocore.readers.vtk_cells import Block, CellArrays, blocks, count_cells
 from isocore.readers.vtk_convex import CONVEX_SET, convex_sets
 from isocore.readers.vtk_faces import Faces, prisms, ragged
 from isocore.readers.vtk_fields import FieldInfo, scalar
 from isocore.readers.vtk_ghosts import cells_at, ghost_cells, hidden_points
 from isocore.readers.vtk_polyhedra import POLYHEDRON, FaceLists, polyhedra
+from isocore.readers.vtk_types import FACETED
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,8 @@ class PieceData:
     connectivity: point numbers of all cells, one cell after the other.
     values: flat, the components of each point, or of each cell, together.
     ghosts: marks of cells by the array's name; hidden: marks of points by `vtkGhostType`. faces: of polyhedra.
+    degrees: (c, 3) of Lagrange and Bezier cells along their axes; weights: (n,) of rational Bezier cells.
+    old: the file is older than version 2.1 of VTK's.
     """
 
     points: npt.NDArray[Any]
@@ -35,6 +38,9 @@ class PieceData:
     ghosts: tuple[tuple[str, npt.NDArray[Any]], ...] = ()
     hidden: npt.NDArray[Any] | None = None
     faces: FaceLists = FaceLists()  # noqa: RUF009
+    degrees: npt.NDArray[Any] | None = None
+    weights: npt.NDArray[Any] | None = None
+    old: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +57,7 @@ class Part:
     """One piece, checked, or all of them. points: (n, 3) float64. counts: cells by VTK type, without ghosts.
 
     values: (n,) of the points, or one for each cell. ragged: the points of the cells of `faces`, which splits them.
-    used: (n,) the points that cells name; None where all count.
+    weights: (n,) of rational Bezier cells' control points, or None.
     """
 
     points: npt.NDArray[np.float64]
@@ -61,6 +67,7 @@ class Part:
     ragged: list[Ragged]
     counts: dict[int, int]
     ghosts: int
+    weights: npt.NDArray[Any] | None = None
 
 
 def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None) -> Part:
@@ -69,7 +76,7 @@ def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None
     if not np.isfinite(points).all():
         raise InputError(f"{path}: some of its points have coordinates that are not finite; write it again")
     arrays = CellArrays.checked(path, (piece.types, piece.offsets, piece.connectivity))
-    arrays = replace(arrays, keep=_kept(path, piece, arrays))
+    arrays = replace(arrays, keep=_kept(path, piece, arrays), degrees=piece.degrees, old=piece.old)
     types = arrays.types if arrays.keep is None else arrays.types[arrays.keep]
     counts = count_cells(path, types)
     faces = [_faces(arrays, number, piece, points) for number in counts if number in FACETED]
@@ -83,6 +90,7 @@ def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None
         [Ragged(*ragged(arrays, one.numbers, len(points), one.name), one.numbers) for one in faces * of_cells],
         counts,
         len(arrays.types) - len(types),
+        piece.weights,
     )
     return _of_own_points(part, of_cells) if part.ghosts else part
 
@@ -109,7 +117,8 @@ def _of_own_points(part: Part, of_cells: bool) -> Part:
     number = np.cumsum(used, dtype=np.int32) - np.int32(1)
     part = renumbered(part, number)
     values = part.values if of_cells else part.values[used]
-    return replace(part, points=part.points[used], values=values)
+    weights = None if part.weights is None else part.weights[used]
+    return replace(part, points=part.points[used], values=values, weights=weights)
 
 
 def used_points(part: Part) -> npt.NDArray[np.bool_]:
@@ -154,7 +163,15 @@ def together(path: str, parts: list[Part]) -> Part:
         [cells for part in moved for cells in part.ragged],
         {},
         sum(part.ghosts for part in parts),
+        _all_weights(parts),
     )
+
+
+def _all_weights(parts: list[Part]) -> npt.NDArray[Any] | None:
+    """Of all points, 1 where a part has none; None where none has any."""
+    if all(part.weights is None for part in parts):
+        return None
+    return np.concatenate([np.ones(len(part.points)) if part.weights is None else part.weights for part in parts])
 
 
 def _moved(part: Part, first_point: int, first_cell: int) -> Part:

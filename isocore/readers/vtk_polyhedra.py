@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.errors import InputError
-from isocore.readers.vtk_cells import FACETED, CellArrays, Integers, narrow
+from isocore.readers.vtk_cells import CellArrays, Integers, narrow
 from isocore.readers.vtk_faces import Faces, spread
+from isocore.readers.vtk_types import FACETED
 
 POLYHEDRON = 42
 _TOGETHER = 64  # faces of all cells read side by side; a cell that has more goes on alone

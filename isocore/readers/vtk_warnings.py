@@ -7,8 +7,9 @@ from collections import Counter
 from isocore.cell_mesh import Connectivity
 from isocore.errors import FieldError
 from isocore.readers.cell_splitting import SplitCells
-from isocore.readers.vtk_cells import FACETED, FLAT, NAMES, Block
+from isocore.readers.vtk_cells import Block
 from isocore.readers.vtk_fields import FieldInfo
+from isocore.readers.vtk_types import FACETED, FLAT, NAMES
 
 
 def cell_warnings(path: str, counts: Counter[int], ghosts: int) -> list[str]:
@@ -47,15 +48,16 @@ def splitting_warnings(counts: Counter[int], split: SplitCells, turned: tuple[in
     return warnings
 
 
-def corner_warnings(blocks: list[Block]) -> list[str]:
-    """Of curved cells that are read by their corners."""
-    counts: Counter[str] = Counter()
-    for block in blocks:
-        if not block.kind.straight:
-            counts[block.kind.name] += len(block.cells)
+def corner_warnings(blocks: list[Block], left: Counter[str], asked: bool) -> list[str]:
+    """Of curved cells that are read by their corners: all where that was asked, else those `left`, by name."""
+    reason = "as --corners asks" if asked else "since no degree has their number of points"
+    if asked:
+        for block in blocks:
+            if not block.kind.straight:
+                left[block.kind.name] += len(block.cells)
     return [
-        f"{count:,} {name} were reduced to their corners; the values between the corners are not used"
-        for name, count in counts.items()
+        f"{count:,} {name} were reduced to their corners, {reason}; the values between the corners are not used"
+        for name, count in left.items()
     ]
 
 

@@ -56,6 +56,7 @@ class Piece:
 class Layout:
     """What the tags say. appended: (encoding, byte offset behind the underscore), or None."""
 
+    version: tuple[int, int] = (0, 1)
     byte_order: str = "LittleEndian"
     header_type: str = "UInt32"
     compressor: str = ""
@@ -108,6 +109,8 @@ class _Scan:
                 " convert it to one with cells that fill space"
             )
         layout = self.layout
+        if match := re.match(r"\s*(\d{1,9})\.(\d{1,9})", attributes.get("version", "")):
+            layout.version = int(match[1]), int(match[2])
         layout.byte_order = attributes.get("byte_order", layout.byte_order)
         layout.header_type = attributes.get("header_type", layout.header_type)
         layout.compressor = attributes.get("compressor", "")

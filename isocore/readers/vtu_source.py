@@ -67,6 +67,16 @@ class MappedSource:
                 faces=FaceLists(
                     self._maybe(piece, "faces"), self._maybe(piece, "faceoffsets"), self._listed(piece)
                 ),
+                degrees=next(
+                    (
+                        read(tag, 3 * piece.cells).reshape(-1, 3)
+                        for tag in piece.named("CellData", "HigherOrderDegrees")
+                        if tag.components == 3
+                    ),
+                    None,
+                ),
+                weights=next((read(tag, piece.points) for tag in piece.named("PointData", "RationalWeights")), None),
+                old=self.arrays.layout.version < (2, 1),
             )
 
     def _maybe(self, piece: Piece, name: str) -> npt.NDArray[Any] | None:

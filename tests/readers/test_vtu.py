@@ -81,38 +81,19 @@ def test_float32_points_become_float64(tmp_path):
     assert mesh.points.dtype == np.float64 and mesh.values.dtype == np.float32
 
 
-@pytest.mark.parametrize("number", [10, 11, 12, 13, 14, 24, 25, 26, 27, 29, 31, 32, 33, 37])
-def test_every_solid_cell_is_read_by_its_corners(number, tmp_path):
-    """A voxel's corners are put in a hexahedron's order; nodes between corners are left out."""
-    nodes = {
-        10: 4,
-        11: 8,
-        12: 8,
-        13: 6,
-        14: 5,
-        24: 10,
-        25: 20,
-        26: 15,
-        27: 13,
-        29: 27,
-        31: 12,
-        32: 18,
-        33: 24,
-        37: 19,
-    }
-    corners = 8 if number in (11, 12, 25, 29, 33) else 4 if number in (10, 24) else 0
-    points = np.random.default_rng(0).normal(size=(nodes[number], 3))
-    path = write(
-        tmp_path / "a.vtu", Mesh(points, [(number, list(range(nodes[number])))], {"f": points[:, 0]})
-    )
+@pytest.mark.parametrize("number, points", [(10, 4), (11, 8), (12, 8), (13, 6), (14, 5), (71, 4), (72, 8), (73, 6)])
+def test_every_straight_cell_is_read(number, points, tmp_path):
+    """A voxel's corners are put in a hexahedron's order; wedges and pyramids become tetrahedra."""
+    places = np.random.default_rng(0).normal(size=(points, 3))
+    path = write(tmp_path / "a.vtu", Mesh(places, [(number, list(range(points)))], {"f": places[:, 0]}))
     mesh = read_field(path)
-    cells = {8: mesh.hexes, 4: mesh.tets, 0: mesh.tets}[corners]
-    expected = {11: [0, 1, 3, 2, 4, 5, 7, 6]}.get(number, list(range(corners)))
-    if corners:
+    cells = {8: mesh.hexes, 4: mesh.tets}.get(points, mesh.tets)
+    expected = {11: [0, 1, 3, 2, 4, 5, 7, 6]}.get(number, list(range(points)))
+    if points in (4, 8):
         assert cells.tolist() == [expected]
     else:
-        assert len(cells) == (2 if number in (14, 27, 37) else 3)
-    assert any("reduced to their corners" in w for w in mesh.warnings) == (number > 14)
+        assert len(cells) == (2 if points == 5 else 3)
+    assert mesh.warnings == ()
 
 
 def test_surface_cells_beside_solid_ones_are_left_out_with_a_warning(tmp_path):

@@ -43,7 +43,7 @@ TABLE = {
     "mfem-vtu/quad_binary_compress.vtu": (None, None, NO_FIELD),
     "mfem-vtu/quad_material_attribute.vtu": ("material", None, QUADS),
     "vtk-data/Hexahedron.vtu": (None, None, (0, 7)),
-    "vtk-data/QuadraticTetra.vtu": ("DistanceToCenter", None, (96, 0)),
+    "vtk-data/QuadraticTetra.vtu": ("DistanceToCenter", None, (768, 0)),
     "vtk-data/Tetrahedron.vtu": ("DistanceToCenter", None, (96, 0)),
     "vtk-data/Wedge.vtu": ("DistanceToCenter", None, (48, 0)),
     "vtk-data/can.vtu": ("EQPS", None, (0, 4_800)),
