@@ -20,7 +20,7 @@ _PARTS = {
     "error": "max mean rms max_world mean_world rms_world",
     "search": "cells extrema skeleton visited intersected",
     "ambiguous": "faces cells",
-    "seconds": "read prepare extract measure write total",
+    "seconds": "read prepare extract normals measure write total own",
     "  ": "peak_rss_bytes",
 }
 #: A cell that begins with one of these is a formula to a spreadsheet.

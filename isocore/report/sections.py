@@ -65,7 +65,7 @@ class Ratio:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seconds:
-    """Seconds by stage, and their sum."""
+    """Seconds by stage, and their sum. own: prepare and extract, the two that a reference has, too."""
 
     read: float = 0.0
     prepare: float = 0.0
@@ -74,3 +74,8 @@ class Seconds:
     measure: float = 0.0
     write: float = 0.0
     total: float = 0.0
+    own: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.own is None:
+            object.__setattr__(self, "own", self.prepare + self.extract)

@@ -10,17 +10,23 @@ from isocore.digits import exact, legible
 from isocore.measurements import Measurements
 from isocore.report.record import BatchReport, RunReport
 
-HEADINGS = ("file", "isovalue", "triangles", "reference", "ratio", "seconds", "ref. s", "watertight", "status")
+HEADINGS = ("file", "isovalue", "triangles", "reference", "ratio", "seconds", "own s", "ref. s", "watertight", "status")
 #: Headings of numbers, which are set to the right.
-RIGHT = frozenset(("isovalue", "triangles", "reference", "ratio", "seconds", "ref. s"))
+RIGHT = frozenset(("isovalue", "triangles", "reference", "ratio", "seconds", "own s", "ref. s"))
 #: Headings in the order in which a narrow screen goes without them.
-LEAVING = ("ref. s", "reference", "ratio", "seconds", "watertight", "isovalue", "triangles")
+LEAVING = ("ref. s", "own s", "reference", "ratio", "seconds", "watertight", "isovalue", "triangles")
 
 
 def summary_rows(batch: BatchReport) -> list[tuple[str, ...]]:
-    """The table on screen, without its headings."""
+    """The table on screen, without its headings. What lies beside its input, as without -d, is named with its path."""
     names = told_apart([run.source if run.output in ("", "-") else run.output for run in batch.outputs])
-    return [summary_row(run, name) for run, name in zip(batch.outputs, names, strict=True)]
+    named = zip(batch.outputs, names, strict=True)
+    return [summary_row(run, run.output if lies_beside(run) else name) for run, name in named]
+
+
+def lies_beside(run: RunReport) -> bool:
+    """Whether the output lies in its input's folder."""
+    return run.output not in ("", "-") and PurePath(run.output).parent == PurePath(run.source).parent
 
 
 def told_apart(paths: Sequence[str]) -> list[str]:
@@ -48,6 +54,7 @@ def summary_row(run: RunReport, name: str) -> tuple[str, ...]:
         count(surface and surface.triangles),
         count(reference and reference.triangles),
         number(ratio and ratio.triangles, ".2f"),
+        number(run.seconds and run.seconds.total, ".3f"),
         number(own_seconds(run), ".3f"),
         number(reference and reference.seconds, ".3f"),
         "" if surface is None else watertight(surface),
@@ -73,10 +80,8 @@ def isovalue_text(run: RunReport) -> str:
 
 
 def own_seconds(run: RunReport) -> float | None:
-    """Seconds to compare with the reference's: prepare and extract."""
-    if run.surface is None or run.seconds is None:
-        return None
-    return run.seconds.prepare + run.seconds.extract
+    """Seconds to compare with the reference's; of a run that made no surface there are none."""
+    return None if run.surface is None or run.seconds is None else run.seconds.own
 
 
 def totals_line(batch: BatchReport) -> str:
@@ -85,7 +90,9 @@ def totals_line(batch: BatchReport) -> str:
     parts = [f"{totals[status]} {status}" for status in ("done", "empty", "skipped", "failed") if totals[status]]
     if totals["missed"]:
         parts.append(f"{totals['missed']} missed a requirement")
-    return f"{', '.join(parts) or 'nothing to do'}: {count(totals['triangles'])} triangles, {totals['seconds']:.2f} s"
+    sums = f"{', '.join(parts) or 'nothing to do'}: {count(totals['triangles'])} triangles, {totals['seconds']:.2f} s"
+    written = [run for run in batch.outputs if run.status != "failed"]
+    return f"{sums}, beside the input" if written and all(map(lies_beside, written)) else sums
 
 
 def count(value: Any) -> str:

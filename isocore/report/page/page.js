@@ -12,7 +12,7 @@ const fileName = (path) => path.split(/[\\/]/).pop();
 const isEmpty = (run) => run.surface != null && !run.surface.triangles;
 const closed = (run) =>
   run.surface == null ? "" : isEmpty(run) || run.surface.watertight == null ? "-" : run.surface.watertight ? "yes" : "no";
-const ownSeconds = (run) => (run.surface && isNumber(run.seconds.extract) ? (run.seconds.prepare || 0) + run.seconds.extract : null);
+const ownSeconds = (run) => (run.surface ? run.seconds.own : null);
 
 function make(tag, text = "", name = "") {
   const element = document.createElement(tag);
@@ -28,7 +28,8 @@ const columns = [
   { title: "triangles", value: (run) => dig(run, "surface.triangles"), show: whole, number: true },
   { title: "reference", value: (run) => dig(run, "reference.triangles"), show: whole, number: true },
   { title: "ratio", value: (run) => dig(run, "ratio.triangles"), show: short(2), number: true },
-  { title: "seconds", value: ownSeconds, show: short(3), number: true },
+  { title: "seconds", value: (run) => run.seconds.total, show: short(3), number: true },
+  { title: "own s", value: ownSeconds, show: short(3), number: true },
   { title: "ref. s", value: (run) => dig(run, "reference.seconds"), show: short(3), number: true },
   { title: "closed", value: closed, show: String },
 ];
@@ -38,7 +39,7 @@ function summarise() {
   const parts = ["done", "empty", "skipped", "failed"].filter((key) => totals[key]).map((key) => `${totals[key]} ${key}`);
   if (totals.missed) parts.push(`${totals.missed} missed a requirement`);
   at("#totals").textContent =
-    `${parts.join(", ") || "nothing done"} — ${whole(totals.triangles)} triangles in ${totals.seconds.toFixed(1)} s`;
+    `${parts.join(", ") || "nothing done"} — ${whole(totals.triangles)} triangles in ${totals.seconds.toFixed(2)} s`;
   const { tool, host } = report;
   const known = (...texts) => texts.filter((text) => text != null).join(" ");
   at("#made").textContent = [
@@ -112,7 +113,7 @@ function drawBars(run) {
   place.replaceChildren();
   const pairs = [
     ["triangles", dig(run, "surface.triangles"), dig(run, "reference.triangles"), whole],
-    ["seconds", ownSeconds(run), dig(run, "reference.seconds"), short(4)],
+    ["own s", ownSeconds(run), dig(run, "reference.seconds"), short(3)],
   ];
   for (const [title, ours, reference, show] of pairs) {
     const top = Math.max(ours ?? 0, reference ?? 0);
