@@ -29,8 +29,8 @@ ISOVALUE = (
         type=Isovalue(),
         metavar="V",
         show_default="auto",
-        help="A number; otsu; pNN, the percentile NN; A:B:N, N values from A to B; auto, the middle of a mask's two "
-        "values, else otsu. Repeatable.",
+        help="A number; otsu; pNN, the percentile NN; A:B:N, N values from A to B; A:B:+S, in steps of S; auto, the "
+        "middle of a mask's two values, else otsu. Repeatable.",
     ),
 )
 

@@ -1,8 +1,9 @@
 """What may be asked for in words: each grammar stands here once, and each value prints back to the text it came from.
 
-An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, or `A:B:N` (N numbers from A to B). The bound
-on the error is a length in voxels (`0.5`) or in world units (`0.3mm`), or `none`. The point that vertices are written
-about is `auto` or three numbers. The command line's help reads this file, so it imports no numpy.
+An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, `A:B:N` (N numbers from A to B), or `A:B:+S`
+(numbers from A towards B in steps of S). The bound on the error is a length in voxels (`0.5`) or in world units
+(`0.3mm`), or `none`. The point that vertices are written about is `auto` or three numbers. The command line's help
+reads this file, so it imports no numpy.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ TOPOLOGIES = ("faces", "trilinear")
 MILLIMETRES = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "m": 1e3}
 
 _MOST_OF_A_RANGE = 10_000
-_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):(?P<count>\d+)")
+_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d+)|\+(?P<step>[^:]+))")
 _LENGTH = re.compile(r"(?P<number>[^a-zµ]+?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
 
 
@@ -154,18 +155,27 @@ def spread(text: str) -> tuple[Choice, ...]:
             raise OptionError(f"isovalue {text}: a percentile lies between p0 and p100")
         return (Percentile(percent, text.lower()),)
     if match := _RANGE.fullmatch(text):
-        return _spread_range(text, _number(text, match["first"]), _number(text, match["last"]), int(match["count"]))
+        return _spread_range(text, match)
     return (Number(_number(text, text), text),)
 
 
-def _spread_range(text: str, first: float, last: float, count: int) -> tuple[Choice, ...]:
+def _spread_range(text: str, match: re.Match[str]) -> tuple[Choice, ...]:
     """The doubles nearest to the numbers that divide the range in equal steps; each is named so that it reads back."""
-    if not 1 <= count <= _MOST_OF_A_RANGE:
-        raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
     from fractions import Fraction  # late, so that the command line's help stays quick
 
     # As decimal fractions: 0.1:0.3:3 means 0.2 in the middle, not what rounded ends would make of it.
-    start, step = Fraction(repr(first)), (Fraction(repr(last)) - Fraction(repr(first))) / max(count - 1, 1)
+    start, end = (Fraction(repr(_number(text, match[name]))) for name in ("first", "last"))
+    if match["step"] is None:
+        count = int(match["count"])
+        step = (end - start) / max(count - 1, 1)
+    else:
+        step = Fraction(repr(_number(text, match["step"])))
+        if step <= 0:
+            raise OptionError(f"isovalue {text}: the step must lie above 0; it goes from A towards B")
+        count = int(abs(end - start) / step) + 1
+        step = step if end > start else -step
+    if not 1 <= count <= _MOST_OF_A_RANGE:
+        raise OptionError(f"isovalue {text}: ask for 1 to {_MOST_OF_A_RANGE} values")
     values = [float(start + step * number) for number in range(count)]
     if len(set(values)) < count:
         raise OptionError(f"isovalue {text}: its {count} values are not all different; ask for fewer or a wider range")
@@ -176,10 +186,22 @@ def _number(text: str, part: str) -> float:
     try:
         value = float(part)
     except ValueError:
-        raise OptionError(f"isovalue {text}: is not a number, otsu, pNN or A:B:N") from None
+        raise OptionError(f"isovalue {text}: {_advice(text)}") from None
     if not math.isfinite(value):
         raise OptionError(f"isovalue {text}: must be finite")
     return value
+
+
+def _advice(text: str) -> str:
+    """What to write in place of a text that is no isovalue."""
+    if "," in text:
+        return "has a comma; give each of several isovalues by itself (-i 100 -i 200), and decimals with a point"
+    if text.endswith("%"):
+        share = text.removesuffix("%").strip().lower().removeprefix("p")
+        return f"may mean many things; p{share} is the value below which {share} percent of the samples lie"
+    if ":" in text:
+        return "is no range; write A:B:N for N values from A to B, or A:B:+S for steps of S"
+    return "is not a number, otsu, pNN, A:B:N or A:B:+S"
 
 
 def parse_max_error(text: str) -> MaxError:

@@ -150,6 +150,12 @@ def test_ranges_are_spread_and_doubles_dropped() -> None:
         ("0:1:4", ["0", "0.3333333333333333", "0.6666666666666666", "1"]),
         ("1e300:1.5e300:2", ["1e+300", "1.5e+300"]),
         ("-1.7e308:1.7e308:3", ["-1.7e+308", "0", "1.7e+308"]),
+        ("100:400:+100", ["100", "200", "300", "400"]),
+        ("100:399.9:+100", ["100", "200", "300"]),
+        ("0.1:0.5:+0.1", ["0.1", "0.2", "0.3", "0.4", "0.5"]),
+        ("-1:-3:+1", ["-1", "-2", "-3"]),
+        ("7:7:+5", ["7"]),
+        ("0:10:+2.5e0", ["0", "2.5", "5", "7.5", "10"]),
     ],
 )
 def test_a_range_keeps_all_digits(text: str, names: list[str]) -> None:
@@ -164,6 +170,28 @@ def test_a_range_of_equal_numbers_is_refused(text: str) -> None:
     """None is dropped without a word."""
     with pytest.raises(OptionError, match="not all different"):
         parse_choices((text,))
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("50%", "p50 is the value below which 50 percent"),
+        ("p50%", "p50 is the value"),
+        ("100,200", "each of several isovalues by itself"),
+        ("0,5", "decimals with a point"),
+        ("1:2", "A:B:N for N values"),
+        ("1:2:2.5", "A:B:+S for steps"),
+        ("1:2:+0", "the step must lie above 0"),
+        ("1:2:+-1", "the step must lie above 0"),
+        ("0:1:+1e-9", "ask for 1 to 10000"),
+        ("loud", "is not a number, otsu, pNN, A:B:N or A:B:+S"),
+    ],
+)
+def test_what_is_no_isovalue_is_answered_with_what_to_write(text: str, advice: str) -> None:
+    """In one line that begins with the text."""
+    with pytest.raises(OptionError) as caught:
+        parse_choice(text)
+    assert str(caught.value).startswith(f"isovalue {text}: ") and advice in str(caught.value)
 
 
 @pytest.mark.parametrize("text", ["50", "50.0", "1e2", "otsu", "p090.5", "auto"])
