@@ -149,9 +149,11 @@ def _read(job: Job) -> Field:
 
 def _outlook(job: Job) -> Outlook:
     index = index_path(job.source)
-    return Outlook(
-        isovalues=len(job.targets), index=index if index.is_file() else None, named=job.backend is not None
-    )
+    try:
+        found = index if index.is_file() else None
+    except OSError:  # the source's name leaves no room for a longer one
+        found = None
+    return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
 
 
 def _emptiness(isovalue: float, known: FieldFacts) -> str:

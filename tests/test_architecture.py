@@ -68,6 +68,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),
     "batches/frames": set(),
+    "batches/leftovers": {"whole_file"},
     "batches/stamps": BATCHED | {"readers"},
     "batches/depfile": BATCHED | {"readers"},
     "batches/places": set(),
@@ -77,9 +78,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     "batches/one_job": BATCHED | {"readers", "memory", "pipeline", "batches/stamps"},
     "batches/dry_run": BATCHED | {"batches/one_job", "batches/stamps"},
     "batches/worker": BATCHED | {"batches/frames", "batches/one_job"},
-    "batches/workers": BATCHED | {"pipeline", "batches/frames"},
-    "batches/cluster": BATCHED | {"pipeline", "batches/one_job"},
-    "batches/run": BATCHED | {"batches/cluster", "batches/one_job", "batches/stamps", "batches/workers"},
+    "batches/worker_process": BATCHED | {"batches/frames"},
+    "batches/workers": BATCHED | {"pipeline", "batches/frames", "batches/leftovers", "batches/worker_process"},
+    "batches/cluster": BATCHED | {"batches/leftovers", "pipeline", "batches/one_job"},
+    "batches/run": BATCHED
+    | {"batches/cluster", "batches/leftovers", "batches/one_job", "batches/stamps", "batches/workers"},
 }
 
 #: Modules without a Python file.

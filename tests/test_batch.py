@@ -18,11 +18,11 @@ import pytest
 from misbehaving_worker import program
 from small_files import ball, write_nifti
 
+from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import estimate
 from isocore.batches.run import Batch, run_jobs
 from isocore.batches.stamps import stamp_path
 from isocore.job import Job, Target
-from isocore.whole_file import remove_parts
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()"]
 FAST = ("-i", "50", "-b", "mc", "-q")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import guarded
 from isocore.errors import OptionError, one_line
 from isocore.job import Job
 from isocore.pipeline import failed
 from isocore.report.record import RunReport
-from isocore.whole_file import remove_parts
 
 _CONNECT_SECONDS = "10s"
 

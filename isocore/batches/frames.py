@@ -6,6 +6,8 @@ import pickle
 import struct
 from typing import Any, BinaryIO
 
+#: What a worker says when it has started.
+READY = "ready"
 LENGTH = struct.Struct("<Q")
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 from isocore.batches import stamps
 from isocore.batches.cluster import run_on_cluster
+from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import estimate, guarded
 from isocore.batches.workers import Limits, run_in_workers
 from isocore.job import STDOUT, Job
 from isocore.report.record import RunReport
-from isocore.whole_file import remove_parts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ def _runs(
         yield from run_on_cluster(jobs, batch.scheduler)
     elif batch.workers:
         limits = Limits(batch.workers, batch.seconds_per_job, batch.memory_bytes)
-        yield from run_in_workers(jobs, limits, estimate=estimate, at=at)
+        yield from run_in_workers(jobs, limits, estimate=estimate, here=guarded, at=at)
     else:
         for job in jobs:
             at([job])

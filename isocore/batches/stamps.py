@@ -7,13 +7,14 @@ of the run with its own hash; the output's hash is in that record. An output is 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields
+import os
+from dataclasses import asdict, dataclass, fields, replace
 from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import Any
 
 from isocore.errors import IsocoreError
-from isocore.job import STDOUT, Job, Options, Target
+from isocore.job import STDOUT, Job, Target
 from isocore.readers import files_of
 from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.record import RunReport
@@ -21,25 +22,37 @@ from isocore.report.schema import built, parsed
 from isocore.version import __version__
 from isocore.whole_file import whole_file
 
-#: The first keys of a stamp's options. The last two stopped being options; they stay, so that the stamps of earlier
-#: runs hold.
-_FIRST_KEYS = {"cap": False, "normals": False, "isovalues": 0, "index": None}
+#: What of a job does not change what is written: where it comes from and goes, how it is judged, whether it is done.
+#: The last two do, and are asked about one by one; whatever else a job may be asked for counts.
+UNHASHED = frozenset(
+    ("source", "targets", "require", "max_triangles", "if_changed", "force", "refusal", "ambiguities", "reference")
+)
+#: Bytes of a file's name beyond which file systems refuse it.
+_LONGEST_NAME = 255
 
 
 @dataclass(frozen=True, slots=True)
 class _Stamp:
-    """A stamp by its keys. input, options, record: hashes; that of the record in `run` came with a later version."""
+    """A stamp by its keys. input, options, record: hashes, the last one of `run`.
+
+    ambiguities: the hash of the file that was asked for beside the output, else "". reference: was one asked for?
+    """
 
     version: str
     input: str
     options: str
     run: dict[str, Any]
     record: str
+    ambiguities: str
+    reference: bool
 
 
 def stamp_path(output: Path) -> Path:
-    """Where the stamp of an output lies."""
-    return output.with_name(f".{output.name}.isocore")
+    """Where the stamp of an output lies: hidden, and named after it, by a hash where that would be too long."""
+    name = f".{output.name}.isocore"
+    if len(os.fsencode(name)) > _LONGEST_NAME:
+        name = f".{sha256(os.fsencode(output.name)).hexdigest()}.isocore"
+    return output.with_name(name)
 
 
 def input_hash(source: Path) -> str:
@@ -62,17 +75,11 @@ def _file_hash(path: Path) -> str:
 
 
 def options_hash(job: Job, target: Target) -> str:
-    """Of what is asked of this output and can change its bytes; threads cannot.
-
-    `job.ambiguities` and `job.reference` are not part of it, though they change what a run leaves beside the output
-    and in its record: asked for later, they alone do not make a run.
-    """
-    options = _FIRST_KEYS | {item.name: getattr(job.options, item.name) for item in fields(Options)}
-    del options["threads"]
-    options["normals"] = job.normals
-    asked: list[Any] = [options, asdict(job.read_options), job.format, job.backend, job.space, target.choice]
-    if job.offset is not None:
-        asked.append(job.offset)
+    """Of what is asked of this output and can change its bytes; threads cannot."""
+    asked = {item.name: getattr(job, item.name) for item in fields(Job) if item.name not in UNHASHED}
+    asked["options"] = asdict(replace(job.options, threads=1, normals=job.normals))
+    asked["read_options"] = asdict(job.read_options)
+    asked["choice"] = target.choice
     return sha256(json.dumps(asked, default=str).encode()).hexdigest()
 
 
@@ -92,12 +99,21 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
             return "options changed", None
         if not source_hash or stamp.input != source_hash:
             return "input changed", None
+        if job.reference and not stamp.reference:
+            return "no reference yet", None
+        if job.ambiguities is not None and not _is_as_made(job.ambiguities, stamp.ambiguities):
+            return "no ambiguities yet, or changed", None
         run = run_from_dict(stamp.run, complete=True)
         if run.written is None or _file_hash(target.output) != run.written.sha256:
             return "output changed", None
     except (IsocoreError, OSError):
         return "no record of how the output was made", None
     return ("", run) if stamp.record == _hash_of(stamp.run) else ("the record of how it was made is damaged", None)
+
+
+def _is_as_made(path: Path, digest: str) -> bool:
+    """Whether a file has this content; what is no file, as a device, has nothing to keep."""
+    return (path.exists() and not path.is_file()) or bool(digest and path.is_file() and _file_hash(path) == digest)
 
 
 def _read_stamp(output: Path) -> _Stamp:
@@ -116,6 +132,15 @@ def _hash_of(run: dict[str, Any]) -> str:
 def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> None:
     """Write down what the output was made from."""
     record = run_as_dict(run)
-    stamp = _Stamp(__version__, source_hash, options_hash(job, target), record, _hash_of(record))
+    beside = job.ambiguities
+    stamp = _Stamp(
+        version=__version__,
+        input=source_hash,
+        options=options_hash(job, target),
+        run=record,
+        record=_hash_of(record),
+        ambiguities=_file_hash(beside) if beside is not None and beside.is_file() else "",
+        reference=job.reference,
+    )
     with whole_file(stamp_path(target.output)) as stream:
         stream.write(json.dumps(asdict(stamp), allow_nan=False).encode())

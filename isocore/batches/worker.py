@@ -12,23 +12,26 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 
-from isocore.batches.frames import receive, send
+from isocore.batches.frames import READY, receive, send
 from isocore.batches.one_job import guarded
 from isocore.job import Job
 from isocore.report.record import RunReport
 
 
 def work_until_stdin_ends(work: Callable[[Job], Iterator[RunReport]] = guarded) -> None:
-    """Answer every job with its records and a None.
+    """Say that it is ready, then answer every job with its records and a None.
 
     Everything a job needs was imported above: a module that two threads import at once, this one and the listener that
     unpickles a job, can end both.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGINT", "SIGHUP"):  # they reach the parent too, which ends its workers in order
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(jobs,), daemon=True).start()
+    send(replies, READY)
     while True:
         for run in work(jobs.get()):
             send(replies, run)

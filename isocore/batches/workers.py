@@ -7,26 +7,25 @@ after a time, and a job yields one result, while here each surface's record come
 from __future__ import annotations
 
 import queue
-import signal
-import subprocess
 import sys
-import tempfile
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import monotonic
-from typing import Any, BinaryIO, cast
+from typing import Any
 
-from isocore.batches.frames import receive, send
+from isocore.batches.frames import READY
+from isocore.batches.leftovers import remove_parts
+from isocore.batches.worker_process import Worker
+from isocore.errors import one_line
 from isocore.job import Job
 from isocore.pipeline import failed
 from isocore.report.record import RunReport
-from isocore.whole_file import remove_parts
 
 #: Starts a worker process.
 COMMAND = (sys.executable, "-P", "-m", "isocore.batches.worker")
-_END_SECONDS = 5.0
+#: Files that this process opens besides: its libraries, reports, lists.
+_SPARE_FILES = 40
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,126 +37,111 @@ class Limits:
     memory_bytes: int | None = None
 
 
-class Worker:
-    """One process and the job it is at. A thread passes on what it says; everything else is the main thread's."""
+class _Team:
+    """The workers there are, and how many there may be: as many as are asked for and as the system lets start."""
 
-    def __init__(self, events: queue.SimpleQueue[tuple[Worker, Any]]) -> None:
-        self.job: Job | None = None
-        self.runs = 0
-        self.deadline: float | None = None
-        self.overtime = False
-        self.bytes = 0
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115  # closed with the worker
-        self._process = subprocess.Popen(
-            COMMAND,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-        )
-        threading.Thread(target=self._listen, args=(events,), daemon=True).start()
+    def __init__(self, limits: Limits) -> None:
+        self.events: queue.SimpleQueue[tuple[Worker, Any]] = queue.SimpleQueue()
+        self.workers: list[Worker] = []
+        self.limits = limits
+        self.most = _startable(limits.count)
+        self.why = ""
 
-    def start(self, job: Job, *, seconds: float | None, estimate: int) -> None:
-        """Give it a job; it must be idle."""
-        self.job, self.runs, self.overtime, self.bytes = job, 0, False, estimate
-        self.deadline = None if seconds is None else monotonic() + seconds
-        try:
-            send(cast(BinaryIO, self._process.stdin), job)
-        except OSError:
-            self._process.kill()
+    def busy(self) -> list[Worker]:
+        """Those that have a job."""
+        return [worker for worker in self.workers if worker.job]
 
-    def rest(self) -> None:
-        """It has done its job."""
-        self.job, self.deadline, self.bytes = None, None, 0
+    def assign(self, waiting: deque[Job], estimate: Callable[[Job], int]) -> None:
+        """Start jobs while a worker is free and the estimates fit; a job that fits nowhere runs alone."""
+        while waiting:
+            busy = self.busy()
+            needed = estimate(waiting[0])
+            held = sum(worker.bytes for worker in busy)
+            if busy and self.limits.memory_bytes is not None and held + needed > self.limits.memory_bytes:
+                return
+            idle = self._idle()
+            if idle is None:
+                return
+            idle.start(waiting.popleft(), seconds=self.limits.seconds, estimate=needed)
 
-    def kill(self, *, overtime: bool = False) -> None:
-        """End it, whatever it does."""
-        self.overtime = overtime
-        self._process.kill()
+    def _idle(self) -> Worker | None:
+        """A worker without a job, a new one if need be; None where there is none to be had."""
+        idle = next((worker for worker in self.workers if not worker.job), None)
+        if idle is None and len(self.workers) < self.most:
+            try:
+                idle = Worker(COMMAND, self.events)
+            except (OSError, MemoryError) as error:
+                self.most, self.why = len(self.workers), one_line(error)
+            else:
+                self.workers.append(idle)
+        return idle
 
-    def close(self) -> None:
-        """End it and wait until it has ended."""
-        self._process.kill()
-        self._process.wait(_END_SECONDS)
-        for stream in (self._process.stdin, self._process.stdout, self._errors):
-            if stream is not None:
-                try:
-                    stream.close()
-                except OSError:
-                    continue
 
-    def why_it_ended(self) -> str:
-        """A sentence about a process that ended before its job did."""
-        code = self._process.wait(_END_SECONDS)
-        if code == -signal.SIGKILL:
-            return "its worker was killed, probably for lack of memory; lower --jobs or crop the data"
-        if code < 0:
-            return f"its worker crashed ({signal.Signals(-code).name}); please report it with the file"
-        self._errors.seek(0)
-        said = self._errors.read().decode(errors="replace").strip().splitlines()
-        return f"its worker ended with code {code} ({said[-1] if said else 'without a word'}); please report it"
-
-    def _listen(self, events: queue.SimpleQueue[tuple[Worker, Any]]) -> None:
-        stdout = cast(BinaryIO, self._process.stdout)
-        try:
-            while True:
-                events.put((self, receive(stdout)))
-        except Exception as error:
-            events.put((self, error))
+def _startable(count: int) -> int:
+    """At most `count`, and so many that files can still be opened: each worker keeps three."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return count
+    files, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    return count if files == resource.RLIM_INFINITY else max(1, min(count, (files - _SPARE_FILES) // 3))
 
 
 def run_in_workers(
-    jobs: Sequence[Job], limits: Limits, *, estimate: Callable[[Job], int], at: Callable[[list[Job]], None]
+    jobs: Sequence[Job],
+    limits: Limits,
+    *,
+    estimate: Callable[[Job], int],
+    here: Callable[[Job], Iterator[RunReport]],
+    at: Callable[[list[Job]], None],
 ) -> Iterator[tuple[Job, RunReport]]:
     """Convert all jobs, some at once; records come as they are done. `at` is told what is being worked on.
 
+    here: converts a job in this process, for where no worker can be started.
     However this ends, no worker and no half-written file is left.
     """
-    events: queue.SimpleQueue[tuple[Worker, Any]] = queue.SimpleQueue()
+    team = _Team(limits)
     waiting = deque(jobs)
-    workers: list[Worker] = []
     try:
-        while waiting or any(worker.job for worker in workers):
-            _assign(waiting, workers, events, limits, estimate)
-            at([worker.job for worker in workers if worker.job])
-            worker, message = _next(events, workers)
+        while waiting or team.busy():
+            team.assign(waiting, estimate)
+            at([worker.job for worker in team.busy() if worker.job] or [waiting[0]])
+            if not team.busy():
+                yield from _without_worker(waiting.popleft(), team, here)
+                continue
+            worker, message = _next(team.events, team.workers)
             job = worker.job
             if isinstance(message, RunReport) and job is not None:
                 worker.runs += 1
                 yield job, message
             elif message is None:
                 worker.rest()
+            elif message == READY:
+                worker.ready = True
             elif isinstance(message, Exception):
-                workers.remove(worker)
-                yield from _lost(worker, limits)
+                team.workers.remove(worker)
+                if job is not None and not worker.ready and not worker.overtime:
+                    team.most, team.why = len(team.workers), worker.why_it_ended()
+                    waiting.appendleft(job)
+                else:
+                    yield from _lost(worker, limits)
                 worker.close()
     finally:
-        for worker in workers:
+        for worker in team.workers:
             worker.close()
             if worker.job is not None:
                 remove_parts(target.output for target in worker.job.targets)
 
 
-def _assign(
-    waiting: deque[Job],
-    workers: list[Worker],
-    events: queue.SimpleQueue[tuple[Worker, Any]],
-    limits: Limits,
-    estimate: Callable[[Job], int],
-) -> None:
-    """Start jobs while a worker is free and the estimates fit; a job that fits nowhere runs alone."""
-    while waiting:
-        busy = [worker for worker in workers if worker.job]
-        if len(busy) >= limits.count:
-            return
-        needed = estimate(waiting[0])
-        held = sum(worker.bytes for worker in busy)
-        if busy and limits.memory_bytes is not None and held + needed > limits.memory_bytes:
-            return
-        idle = next((worker for worker in workers if not worker.job), None)
-        if idle is None:
-            idle = Worker(events)
-            workers.append(idle)
-        idle.start(waiting.popleft(), seconds=limits.seconds, estimate=needed)
+def _without_worker(
+    job: Job, team: _Team, here: Callable[[Job], Iterator[RunReport]]
+) -> Iterator[tuple[Job, RunReport]]:
+    """Convert a job in this process; before the next one a worker is tried again."""
+    missing = "without --timeout and " if team.limits.seconds else ""
+    why = f"no worker could be started ({team.why}); converted {missing}without its protection from crashes"
+    for run in here(job):
+        yield job, replace(run, warnings=(*run.warnings, why))
+    team.most = _startable(team.limits.count)
 
 
 def _next(events: queue.SimpleQueue[tuple[Worker, Any]], workers: list[Worker]) -> tuple[Worker, Any]:

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import dataclass, replace
+from errno import ENAMETOOLONG
 from pathlib import Path
 from typing import Any, Literal
 
@@ -72,7 +73,7 @@ def count_raw(path: Path, options: ReadOptions) -> int:
 def raw_files(path: Path) -> tuple[Path, ...]:
     """Its sidecar, where there is one."""
     sidecar = _sidecar(path)
-    return (sidecar,) if sidecar.is_file() else ()
+    return (sidecar,) if _is_there(sidecar) else ()
 
 
 def _described(path: Path, options: ReadOptions) -> _Description:
@@ -121,10 +122,19 @@ def _sidecar(path: Path) -> Path:
     return path.with_name(bare + ".json")
 
 
+def _is_there(sidecar: Path) -> bool:
+    try:
+        return sidecar.is_file()
+    except OSError as error:
+        if error.errno == ENAMETOOLONG:  # the samples' name leaves no room for a longer one
+            return False
+        raise
+
+
 def _with_sidecar(path: Path, options: ReadOptions) -> ReadOptions:
     """`options`, filled up with what NAME.raw.json says."""
     sidecar = _sidecar(path)
-    if not sidecar.is_file():
+    if not _is_there(sidecar):
         return options
     try:
         said = json.loads(sidecar.read_text("utf-8"))
