@@ -14,7 +14,7 @@ import click
 from isocore import choices
 
 from .groups import option_of
-from .values import Numbers, Offset, Positive, VolumeChoice
+from .values import Ignored, Numbers, Offset, Positive, VolumeChoice
 
 if TYPE_CHECKING:
     from isocore.readers.options import ReadOptions
@@ -38,6 +38,7 @@ class Reading:
     merge_points: float | None
     keep_duplicates: bool
     corners: bool
+    ignore: tuple[float, ...]
 
     def read_options(self) -> ReadOptions:
         """The same for a reader; a volume of "all" is spread by whoever plans the jobs."""
@@ -53,6 +54,7 @@ class Reading:
             origin=self.origin,
             byte_order=self.byte_order,
             offset=self.offset,
+            ignore=self.ignore,
             mesh=MeshOptions(
                 merge_points=self.merge_points, keep_duplicates=self.keep_duplicates, corners=self.corners
             ),
@@ -108,6 +110,13 @@ _READING_OPTIONS = (
         "--component",
         metavar="I|magnitude",
         help="Which component of a mesh's vector field, counted from 0, or its length; needed for one.",
+    ),
+    _input(
+        "--ignore",
+        type=Ignored(),
+        metavar="VALUE",
+        multiple=True,
+        help="A value that means that nothing is there: outside, as NaN is; may be repeated.",
     ),
     _input(
         "--merge-points",

@@ -76,6 +76,22 @@ class Positive(click.ParamType):
         return number
 
 
+class Ignored(click.ParamType):
+    """A finite number: what is not finite counts as outside anyway."""
+
+    name = "VALUE"
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """The number."""
+        try:
+            number = float(value)
+        except ValueError:
+            self.fail(f"{value}: needs a number, as -9999", parameter, context)
+        if not math.isfinite(number):
+            self.fail(f"{value}: counts as outside anyway; leave it out", parameter, context)
+        return number
+
+
 class MaxErrorType(_Worded):
     """Voxels (0.5), world units (0.3mm), or none."""
 

@@ -55,6 +55,7 @@ class CellMesh:
     warnings: what the reader wants its user to know.
     connectivity: what was left out and joined.
     curved: cells that were divided; a surface's vertices follow them between their nodes.
+    ignored: how many values are NaN because they were named as such.
     """
 
     points: npt.NDArray[np.float64]
@@ -67,6 +68,7 @@ class CellMesh:
     warnings: tuple[str, ...] = ()
     connectivity: Connectivity = Connectivity()
     curved: tuple[CurvedCells, ...] = ()
+    ignored: int = 0
 
     def __post_init__(self) -> None:
         n = len(self.points)

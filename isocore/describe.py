@@ -47,6 +47,8 @@ def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Descripti
     known = FieldFacts.of(source, spread)
     facts |= _volume_facts(source, known) if isinstance(source, Volume) else _mesh_facts(source, known)
     facts |= {"range": known.range, "nonfinite": known.nonfinite}
+    if options.ignore:
+        facts["ignored"] = known.ignored
     facts["warnings"] = list(source.warnings)
     return Description(facts, spread, suggestions(spread))
 

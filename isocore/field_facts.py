@@ -20,7 +20,8 @@ class FieldFacts:
     space: what world means, as in Volume.
     field: the mesh's field that was read; None for a volume.
     connectivity: of a mesh, how its cells came to hang together.
-    range: smallest and largest finite value, scaled; None without one. nonfinite: samples that have none.
+    range: smallest and largest finite value, scaled; None without one.
+    nonfinite: samples that have none. ignored: samples that were named as meaning nothing; they count as outside too.
     """
 
     kind: Literal["volume", "mesh"]
@@ -34,6 +35,7 @@ class FieldFacts:
     nonfinite: int
     histogram: Bars
     connectivity: Connectivity | None = None
+    ignored: int = 0
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -55,7 +57,8 @@ class FieldFacts:
                 unit=source.unit,
                 field=None,
                 range=spread.range,
-                nonfinite=spread.nonfinite,
+                nonfinite=spread.nonfinite - source.ignored,
+                ignored=source.ignored,
                 histogram=spread.coarse(),
             )
         return cls(
@@ -67,7 +70,8 @@ class FieldFacts:
             unit=source.unit,
             field=source.field_name,
             range=spread.range,
-            nonfinite=spread.nonfinite,
+            nonfinite=spread.nonfinite - source.ignored,
+            ignored=source.ignored,
             histogram=spread.coarse(),
             connectivity=source.connectivity,
         )

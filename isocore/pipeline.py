@@ -132,6 +132,7 @@ def _asked(job: Job, target: Target) -> Asked:
             format=job.format,
             space=job.space,
             offset=None if job.offset is None else str(job.offset),
+            ignore=job.read_options.ignore or None,
         ),
     )
 

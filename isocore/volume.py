@@ -41,6 +41,7 @@ class Volume:
     space: what world means: "ras", "lps", "las", or "native" where the file does not say.
     unit: of the world, "mm", or "" where the file does not say.
     warnings: what the reader wants its user to know.
+    ignored: how many samples are NaN because they were named as such.
     """
 
     samples: npt.NDArray[Any]
@@ -50,6 +51,7 @@ class Volume:
     space: Space = "native"
     unit: str = ""
     warnings: tuple[str, ...] = ()
+    ignored: int = 0
 
     def __post_init__(self) -> None:
         samples = self.samples

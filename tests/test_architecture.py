@@ -46,7 +46,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "job": {"choices", "readers/options", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
-    "readers": {"errors", "volume", "cell_mesh"} | KERNELS,
+    "readers": {"digits", "errors", "volume", "cell_mesh"} | KERNELS,
     "readers/options": set(),
     "apart": KERNELS,
     "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 
 from isocore.errors import InputError, IsocoreError, about, reading
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
+from isocore.readers.ignored import without_ignored
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
 from isocore.readers.pointers import absence, pointer
 from isocore.readers.strangers import what_it_is
+from isocore.volume import Volume
 
 if TYPE_CHECKING:
     from isocore.readers.vtk_fields import FieldInfo
@@ -28,8 +30,10 @@ def suffix_of(path: os.PathLike[str] | str) -> str | None:
 
 def read(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> Field:
     """The field in `path`. Every refusal is an IsocoreError whose message starts with the path."""
+    options = options or ReadOptions()
     with _named(path):
-        return _format(path).read(Path(path), options or ReadOptions())
+        field = _format(path).read(Path(path), options)
+        return without_ignored(field, options.ignore) if options.ignore and isinstance(field, Volume) else field
 
 
 def count_volumes(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> int:

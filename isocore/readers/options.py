@@ -25,6 +25,7 @@ class ReadOptions:
     volume: which volume of a 4-D file, counted from 0; None where the file holds one.
     field, component: VTU, which point field and which part of it ("0", "1", ... or "magnitude").
     mesh: how cells hang together.
+    ignore: values, scaled, whose samples count as outside, as NaN does.
     shape, dtype, spacing, origin, byte_order, offset: raw files; they go before those of a sidecar.
     """
 
@@ -32,6 +33,7 @@ class ReadOptions:
     field: str | None = None
     component: str | None = None
     mesh: MeshOptions = MeshOptions()
+    ignore: tuple[float, ...] = ()
     shape: tuple[int, ...] | None = None
     dtype: str | None = None
     spacing: tuple[float, ...] | None = None

@@ -15,8 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.cell_mesh import CellMesh, Connectivity
+from isocore.digits import exact
 from isocore.errors import FieldError
 from isocore.readers.cell_splitting import SplitCells, split_cells
+from isocore.readers.ignored import values_without_ignored
 from isocore.readers.options import MeshOptions
 from isocore.readers.vtk_cells import by_corners
 from isocore.readers.vtk_centres import SplitFaces, split_at_centres
@@ -34,13 +36,19 @@ def assembled(
     field: FieldInfo,
     component: int | None,
     options: MeshOptions = MeshOptions(),  # noqa: B008
+    ignore: tuple[float, ...] = (),
 ) -> CellMesh:
     """One mesh of all pieces, with one value per point; component None is the magnitude of `field`.
+
+    ignore: values that become NaN before anything is averaged.
 
     Raises InputError where the arrays contradict each other, FieldError where they cannot be contoured; each
     message starts with `path`.
     """
     parts = [checked(path, piece, field, component) for piece in pieces]
+    before = sum(_not_finite(part.values) for part in parts)
+    kept, missing = values_without_ignored([part.values for part in parts], ignore)
+    parts = [replace(part, values=values) for part, values in zip(parts, kept, strict=True)]
     counts = sum((Counter(part.counts) for part in parts), Counter[int]())
     ghosts = sum(part.ghosts for part in parts)
     warnings = cell_warnings(path, counts, ghosts)
@@ -58,7 +66,10 @@ def assembled(
         warnings.append(f"the points of {len(parts)} pieces were not joined: the surface has seams there")
     if field.of == "cells":
         warnings.append(f"{field.name} is a cell field; each point got the mean of its cells, which blurs it")
-    infinite = values.size - int(np.count_nonzero(np.isfinite(values)))
+    warnings += [f"no value of {field.name} is {exact(value)}, which --ignore names" for value in missing]
+    infinite = _not_finite(values)
+    ignored = max(0, infinite - before) if ignore else 0
+    infinite -= ignored
     if infinite:
         warnings.append(f"{infinite:,} of {values.size:,} values of {field.name} are not finite and outside")
     return CellMesh(
@@ -71,7 +82,12 @@ def assembled(
         warnings=tuple(warnings),
         connectivity=found,
         curved=tuple(shapes.curved),
+        ignored=ignored,
     )
+
+
+def _not_finite(values: npt.NDArray[Any]) -> int:
+    return values.size - int(np.count_nonzero(np.isfinite(values)))
 
 
 def _hung_together(

@@ -30,7 +30,7 @@ def read_vtu(path: Pathlike, options: ReadOptions) -> CellMesh:
         source = _open(name)
         field = choose(name, source.fields, options)
         component = component_of(name, field, options.component)
-        return assembled(name, source.pieces(field), field, component, options.mesh)
+        return assembled(name, source.pieces(field), field, component, options.mesh, options.ignore)
 
 
 def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:

@@ -12,7 +12,7 @@ from isocore.report.texts import shown
 
 _PARTS = {
     "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",
-    " ": "range nonfinite isovalue asked chosen backend backend_chosen",
+    " ": "range nonfinite ignored isovalue asked chosen backend backend_chosen",
     "surface": "triangles vertices components boundary_edges nonmanifold_edges nonmanifold_vertices euler watertight",
     "surface ": "area volume degenerate",
     "reference": "name triangles vertices seconds",

@@ -21,6 +21,7 @@ class Given:
     format: str
     space: str
     offset: str | None = None
+    ignore: tuple[float, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

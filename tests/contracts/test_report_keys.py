@@ -57,7 +57,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     commands: list[tuple[object, ...]] = [
         (scan, "-i", 50, "-b", "asc", "--block-size", 8, "--max-error", "0.3mm", "--cap", "--normals"),
         (scan, "-i", 50, "-b", "mc", "--topology", "trilinear", "--max-triangles", 3),
-        (scan, "-i", 50, "-b", "thinning", "--offset", "auto"),
+        (scan, "-i", 50, "-b", "thinning", "--offset", "auto", "--ignore", 0),
         (mesh, "-i", 0.1, "-b", "mc"),
         (mesh, "-i", 0.1, "-b", "thinning"),
         (scan, "-i", 1e9, "-b", "mc", "--if-changed"),
