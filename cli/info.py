@@ -72,7 +72,7 @@ def _record(path: Path, found: Description) -> dict[str, Any]:
 
 def _lines(path: Path, found: Description, width: int | None) -> list[str]:
     lines = [styled(unarmed(printable(path, stray=True)), bold=True)]
-    facts = [(key, _line(key, value)) for key, value in found.facts.items() if _worth_a_line(key, value)]
+    facts = [(key, _line(key, value, found)) for key, value in found.facts.items() if _worth_a_line(key, value)]
     for key, text in [*facts, *(("warning", warning) for warning in found.facts["warnings"])]:
         lines += folded(f"  {key:<12} ", text, width)
     lines += drawn(found.spread.coarse(_bars(width)), width)
@@ -85,9 +85,13 @@ def _lines(path: Path, found: Description, width: int | None) -> list[str]:
     return lines
 
 
-def _line(key: str, value: Any) -> str:
+def _line(key: str, value: Any, found: Description) -> str:
     if key == "range":
-        return " to ".join(legible(*value)) if value else "no finite sample"
+        from isocore.isovalue import pasted
+
+        return " to ".join(pasted(end, found.spread) for end in value) if value else "no finite sample"
+    if key == "labels":
+        return f"{value:,} values, constant over regions: it looks like a label map"
     if key == "bounds":
         axes = [legible(*ends, digits=_DIGITS) for ends in zip(*value, strict=True)]
         low, high = (", ".join(corner) for corner in zip(*axes, strict=True))

@@ -15,6 +15,7 @@ from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram, histogram
 from isocore.isovalue import Chosen, suggestions
 from isocore.readers import ReadOptions, count_volumes, offered_fields, read
+from isocore.segmentation import label_count
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
@@ -49,8 +50,11 @@ def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Descripti
     facts |= {"range": known.range, "nonfinite": known.nonfinite}
     if options.ignore:
         facts["ignored"] = known.ignored
-    facts["warnings"] = list(source.warnings)
-    return Description(facts, spread, suggestions(spread))
+    if labels := label_count(source, spread):
+        facts["labels"] = labels
+    isovalues = suggestions(spread)
+    facts["warnings"] = [*source.warnings, *(warning for chosen in isovalues[:1] for warning in chosen.warnings)]
+    return Description(facts, spread, isovalues)
 
 
 def _choose_field(offered: tuple[FieldInfo, ...], options: ReadOptions, facts: dict[str, Any]) -> ReadOptions:

@@ -58,7 +58,7 @@ def _chosen(choice: Choice, histogram: Histogram) -> Chosen:
     if is_two_valued(histogram):
         low, high = histogram.kept_range or ends
         why = "midpoint of the two values {} and {}".format(*legible(low, high))
-        return Chosen(choice, _middle(low, high), why, warnings)
+        return Chosen(choice, middle(low, high), why, warnings)
     return Chosen(choice, otsu(histogram), "Otsu's threshold, since none was given", warnings)
 
 
@@ -67,7 +67,7 @@ def _for_a_constant(value: float) -> float:
     return value / 2 if value else 0.5
 
 
-def _middle(low: float, high: float) -> float:
+def middle(low: float, high: float) -> float:
     """Halfway, but above `low` also where no double lies between the two: inside is from the isovalue on."""
     middle = low / 2 + high / 2 if math.isinf(low + high) else (low + high) / 2
     return middle if middle > low else high
@@ -85,7 +85,7 @@ def _set_aside(group: Apart, histogram: Histogram) -> str:
         else ("they were set aside to choose the isovalue and count")
     )
     if group.low == group.high:
-        return f"{told} as {side}; if that value means that nothing is there, --ignore {_pasted(group.low, histogram)}"
+        return f"{told} as {side}; if that value means that nothing is there, --ignore {pasted(group.low, histogram)}"
     return f"{told} as {side}; if they are data, give the isovalue with -i"
 
 
@@ -93,7 +93,7 @@ def _beside_a_percentile(histogram: Histogram) -> tuple[str, ...]:
     """Warnings for groups that lie apart and are large enough to move a percentile, which counts them."""
     return tuple(
         f"{_share(group, histogram)}, far from all others, and percentiles count them"
-        + (f"; --ignore {_pasted(group.low, histogram)} leaves them out" if group.low == group.high else "")
+        + (f"; --ignore {pasted(group.low, histogram)} leaves them out" if group.low == group.high else "")
         for group in histogram.apart
         if group.count >= _SHARE_THAT_MOVES * histogram.finite
     )
@@ -102,14 +102,14 @@ def _beside_a_percentile(histogram: Histogram) -> tuple[str, ...]:
 def _share(group: Apart, histogram: Histogram) -> str:
     share = 100 * group.count / len(histogram.samples)
     if group.low == group.high:
-        values = _pasted(group.low, histogram)
+        values = pasted(group.low, histogram)
     else:
         values = "from {} to {}".format(*legible(group.low, group.high))
     noun = "sample is" if group.count == 1 else "samples are"
     return f"{group.count:,} {noun} {values} ({share:.2g} % of all)"
 
 
-def _pasted(value: float, histogram: Histogram) -> str:
+def pasted(value: float, histogram: Histogram) -> str:
     """A sample's value as short as its type allows, to be pasted into a command."""
     if histogram.samples.dtype == np.float32 and histogram.slope == 1 and histogram.intercept == 0:
         return str(np.float32(value)).removesuffix(".0")
@@ -144,7 +144,7 @@ def otsu(histogram: Histogram) -> float:
     end = 0 if histogram.exact else 1
     ends = (histogram.scaled(histogram.edge(float(place))) for place in (occupied[cut] + end, occupied[cut + 1]))
     lowest = (histogram.kept_range or (0.0, 0.0))[0]
-    return max(_middle(*sorted(ends)), math.nextafter(lowest, math.inf))
+    return max(middle(*sorted(ends)), math.nextafter(lowest, math.inf))
 
 
 def percentile(histogram: Histogram, percent: float) -> float:

@@ -10,8 +10,8 @@ from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend,
 from isocore.digits import exact, legible
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
 from isocore.field_facts import FieldFacts
-from isocore.histogram import histogram
-from isocore.isovalue import choose
+from isocore.histogram import Histogram, histogram
+from isocore.isovalue import choose, is_two_valued, middle
 from isocore.job import Job, Options, Target
 from isocore.measurements import Measurements, measure
 from isocore.memory import forget_peak, peak_bytes
@@ -22,6 +22,7 @@ from isocore.readers import read
 from isocore.report.record import RunReport
 from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
 from isocore.requirements import missed
+from isocore.segmentation import isovalue_warnings, label_count
 from isocore.surface import Point
 from isocore.timer import Timer
 from isocore.volume import Volume
@@ -44,6 +45,7 @@ def convert(job: Job) -> Iterator[RunReport]:
             offset = offset_of(source, job.offset)
             source = moved_field(source, offset)
         known = FieldFacts.of(source, spread)
+        labels = label_count(source, spread)
         outlook = _outlook(job)
         backend, why = (job.backend, "given") if job.backend else default_backend(type(source), outlook)
         with timer("prepare"):
@@ -69,10 +71,11 @@ def convert(job: Job) -> Iterator[RunReport]:
                 run = RunReport(
                     asked=_asked(job, target),
                     status="done" if measured.triangles else "empty",
-                    message="" if measured.triangles else _emptiness(chosen.isovalue, known),
+                    message="" if measured.triangles else _emptiness(chosen.isovalue, spread),
                     warnings=source.warnings
                     + known.warnings
                     + chosen.warnings
+                    + isovalue_warnings(chosen.isovalue, spread, labels)
                     + found.warnings
                     + format_warnings(job)
                     + _border(measured, known)
@@ -157,13 +160,16 @@ def _outlook(job: Job) -> Outlook:
     return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
 
 
-def _emptiness(isovalue: float, known: FieldFacts) -> str:
-    if known.range is None:
+def _emptiness(isovalue: float, spread: Histogram) -> str:
+    if spread.range is None:
         return f"no surface at isovalue {exact(isovalue)}; no sample is finite"
-    low, high = known.range
+    low, high = spread.range
     if low == high:
         return f"no surface at isovalue {exact(isovalue)}; every sample is {exact(low)}"
     value, low_text, high_text = legible(isovalue, low, high)
+    if is_two_valued(spread) and not spread.apart:
+        midway = exact(middle(low, high))
+        return f"no surface at isovalue {value}; the samples are {low_text} or {high_text}, so ask for -i {midway}"
     return f"no surface at isovalue {value}; the samples lie between {low_text} and {high_text}"
 
 

@@ -20,7 +20,7 @@ NOUNS = {"errors", "version", "digits", "choices"} | {
     "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
-FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts"}
+FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "segmentation"}
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
 #: What becomes of coordinates on their way to the file.
@@ -51,6 +51,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "apart": KERNELS,
     "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,
     "isovalue": {"apart", "choices", "digits", "errors", "histogram"} | KERNELS,
+    "segmentation": {"digits", "extraction", "histogram", "isovalue", "volume"},
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,
