@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from isocore.errors import printable
+from isocore.errors import printable, told
 
 from .console import say, screen_width, styled, unarmed
 from .groups import GroupedCommand, option_of
@@ -81,15 +81,14 @@ def bench(
     """
     wanted = Wanted(threads=threads or default_threads(), **chosen)
     wanted.check(len(files))
-    from isocore.errors import IsocoreError
 
     failures = 0
     records = []
     for path in files:
         try:
             tables = _tables(path, wanted)
-        except IsocoreError as error:
-            say(f"isocore: {error}")
+        except Exception as error:  # one bad file never stops the others
+            say(f"isocore: {told(path, error)}")
             failures += 1
             continue
         if as_json:

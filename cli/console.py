@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+from contextlib import suppress
 from threading import Lock
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TextIO
@@ -67,7 +68,8 @@ class Progress:
             self._timer.join()
         with self._lock:
             if self._bar is not None:
-                self._bar.stop()
+                with suppress(OSError):
+                    self._bar.stop()
                 self._bar = None
 
     def at(self, jobs: list[Job]) -> None:
@@ -117,9 +119,13 @@ class Progress:
 
 
 def say(text: str, **style: Any) -> None:
-    """One line for people, on stderr, whatever names of files and fields it holds."""
+    """One line for people, on stderr, whatever names of files and fields it holds.
+
+    Where stderr leads nowhere any more (a full disk, a connection that was closed) the work goes on without.
+    """
     line = unarmed(printable(text))
-    click.echo(styled(line, **style) if style else line, err=True)
+    with suppress(OSError):
+        click.echo(styled(line, **style) if style else line, err=True)
 
 
 def tell(text: str) -> None:

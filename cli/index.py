@@ -7,6 +7,8 @@ from time import perf_counter
 
 import click
 
+from isocore.errors import told
+
 from .console import say, tell
 from .groups import GroupedCommand
 from .options import PATH, Reading, reading_options
@@ -22,15 +24,15 @@ def index(context: click.Context, files: tuple[Path, ...], reading: Reading) -> 
     \b
     isocore index sample_volumes/torus.vtu
     """
-    from isocore.errors import IsocoreError
-
     failures = 0
     for path in files:
         try:
-            tell(_index(path, reading))
-        except IsocoreError as error:
-            say(f"isocore: {error}")
+            made = _index(path, reading)
+        except Exception as error:  # one bad file never stops the others
+            say(f"isocore: {told(path, error)}")
             failures += 1
+        else:
+            tell(made)
     context.exit(1 if failures else 0)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from isocore.digits import exact, legible
-from isocore.errors import printable
+from isocore.errors import printable, told
 
 from .console import say, screen_width, styled, unarmed
 from .groups import GroupedCommand, option_of
@@ -39,15 +39,14 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
     isocore info sample_volumes/knot.nii.gz
     """
     from isocore.describe import describe
-    from isocore.errors import IsocoreError
 
     failures = 0
     described: list[dict[str, Any]] = []
     for path in files:
         try:
             found = describe(path, reading.read_options(), threads=default_threads())
-        except IsocoreError as error:
-            say(f"isocore: {error}")
+        except Exception as error:  # one bad file never stops the others
+            say(f"isocore: {told(path, error)}")
             failures += 1
             continue
         if as_json:

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
+from pathlib import Path
 from types import FrameType
 
 import click
 
-from isocore.errors import IsocoreError, OptionError, printable
+from isocore.errors import IsocoreError, OptionError, one_line, printable
 
 from .console import say, unarmed
 from .names import speak_any_name
+from .streams import open_closed_streams, settle_streams
 
 #: Each command is a file of its name, imported only when it is called or described.
 COMMANDS = {
@@ -25,20 +27,25 @@ COMMANDS = {
     "completion": "what makes bash, zsh or fish complete commands and options",
 }
 
-FAILED, WRONG_COMMAND, MISSED, INTERRUPTED, TERMINATED = 1, 2, 3, 130, 143
+FAILED, WRONG_COMMAND, MISSED, HUNG_UP, INTERRUPTED, TERMINATED = 1, 2, 3, 129, 130, 143
 #: What the codes mean, for people.
 EXIT_CODES = {
     0: "all done, or up to date",
     FAILED: "some input failed",
     WRONG_COMMAND: "the command line is wrong",
     MISSED: "a requirement was missed",
+    HUNG_UP: "hung up: the terminal or its connection was closed",
     INTERRUPTED: "interrupted",
     TERMINATED: "terminated",
 }
 
 
 class Terminated(BaseException):
-    """SIGTERM, as an exception that cleans up on its way out."""
+    """SIGTERM or SIGHUP, as an exception that cleans up on its way out."""
+
+    def __init__(self, number: int) -> None:
+        self.code = HUNG_UP if number == getattr(signal, "SIGHUP", None) else TERMINATED
+        super().__init__("hung up" if self.code == HUNG_UP else "terminated")
 
 
 class _LateGroup(click.Group):
@@ -88,39 +95,64 @@ def isocore() -> None:
 
 def main() -> None:
     """The entry point: run a command and exit with its code."""
-    signal.signal(signal.SIGTERM, _terminate)
+    open_closed_streams()
+    _listen_to_signals()
     speak_any_name()
     try:
         code = isocore.main(standalone_mode=False, prog_name="isocore")
+        if not code:
+            sys.stdout.flush()
     except click.exceptions.Exit as wish:
         code = wish.exit_code
     except click.ClickException as error:
         error.message = unarmed(printable(error.message))
-        error.show()
+        with suppress(OSError):
+            error.show()
         code = WRONG_COMMAND
-    except OptionError as error:
-        say(f"isocore: {error}")
-        code = WRONG_COMMAND
-    except IsocoreError as error:
-        say(f"isocore: {error}")
-        code = FAILED
-    except ImportError as error:
-        if error.name != "isocore._kernels":
-            raise
-        say(f"isocore: {error}")
-        code = FAILED
     except (KeyboardInterrupt, click.exceptions.Abort):
-        click.echo("isocore: interrupted", err=True)
+        say("isocore: interrupted")
         code = INTERRUPTED
-    except Terminated:
-        click.echo("isocore: terminated", err=True)
-        code = TERMINATED
-    except BrokenPipeError:
-        # Whoever read our output has left; point stdout elsewhere so that Python does not complain at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = FAILED
+    except Terminated as end:
+        say(f"isocore: {end}")
+        code = end.code
+    except Exception as error:
+        code = _failure(error)
+    settle_streams()
     sys.exit(code or 0)
 
 
+def _failure(error: Exception) -> int:
+    """Say what went wrong in one line; the code to exit with."""
+    if isinstance(error, OSError) and error.filename is None:  # written by name, a file would have told its own
+        if not isinstance(error, BrokenPipeError):  # else whoever read our output has left
+            say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
+        return FAILED
+    if isinstance(error, IsocoreError):
+        say(f"isocore: {error}")
+        return WRONG_COMMAND if isinstance(error, OptionError) else FAILED
+    if isinstance(error, ImportError):
+        say(f"isocore: {one_line(error)}{'' if error.name == 'isocore._kernels' else '; install isocore again'}")
+        return FAILED
+    if sys.flags.dev_mode:
+        raise error
+    import traceback
+
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    where = f"{Path(place.filename).name} line {place.lineno}, `python -X dev` shows all of it"
+    say(f"isocore: internal error ({type(error).__name__}: {one_line(error)}; {where}); please report it")
+    return FAILED
+
+
+def _listen_to_signals() -> None:
+    """End in order where the system asks for it; a program that was started to outlive its terminal does."""
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and (name == "SIGTERM" or signal.getsignal(number) is not signal.SIG_IGN):
+            signal.signal(number, _terminate)
+
+
 def _terminate(number: int, frame: FrameType | None) -> None:
-    raise Terminated
+    for name in ("SIGTERM", "SIGHUP"):  # once is enough: a second one would end the cleaning up
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_IGN)
+    raise Terminated(number)

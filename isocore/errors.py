@@ -12,6 +12,7 @@ it, it is printable and at most LONGEST characters; a report's `source` and `out
 
 from __future__ import annotations
 
+import errno
 import gzip
 import lzma
 import os
@@ -83,6 +84,15 @@ def about(path: object, text: object, *others: object) -> str:
     return shortened(f"{path}: {text}")
 
 
+def told(path: object, error: BaseException) -> str:
+    """The message of any error at all about a path; of one that nobody foresaw it has the type, for a report of it."""
+    if isinstance(error, IsocoreError):
+        return about(path, error)
+    if isinstance(error, MemoryError):
+        return about(path, "does not fit into memory; free some or crop the data")
+    return about(path, f"internal error ({type(error).__name__}: {one_line(error)}); please report it")
+
+
 def one_line(error: BaseException) -> str:
     """A foreign exception's text on one line, never empty."""
     text = shortened(" ".join(str(error).split()))
@@ -147,7 +157,8 @@ def writing(path: os.PathLike[str] | str) -> Iterator[None]:
         raise
     except OSError as error:
         reason = error.strerror or one_line(error)
-        raise OutputError(f"{name}: cannot be written ({reason}); check the folder and the free space") from error
+        todo = "choose a shorter name" if error.errno == errno.ENAMETOOLONG else "check the folder and the free space"
+        raise OutputError(f"{name}: cannot be written ({reason}); {todo}") from error
 
 
 __all__ = [
@@ -162,5 +173,6 @@ __all__ = [
     "printable",
     "reading",
     "shortened",
+    "told",
     "writing",
 ]

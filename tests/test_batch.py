@@ -151,9 +151,9 @@ def test_a_killed_run_is_finished_by_the_next(scans: Path, tmp_path: Path) -> No
         assert not list(out.rglob("*.part"))
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130), ("SIGHUP", 129)])
 def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
-    scans: Path, tmp_path: Path, number: signal.Signals, code: int
+    scans: Path, tmp_path: Path, name: str, code: int
 ) -> None:
     """The report holds what was done until then."""
     report = tmp_path / "run.json"
@@ -164,7 +164,7 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
         for _ in _polling(60):
             if report.exists() and len(outputs(report)) == 11:
                 break
-        process.send_signal(number)
+        process.send_signal(getattr(signal, name))
         assert process.wait(30) == code
     finally:
         process.kill()

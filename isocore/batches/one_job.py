@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.batches import stamps
-from isocore.errors import OutputError, one_line
+from isocore.errors import OutputError, told
 from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
@@ -27,8 +27,7 @@ def guarded(job: Job) -> Iterator[RunReport]:
             yield run
             done += 1
     except Exception as error:
-        what = f"internal error ({type(error).__name__}: {one_line(error)}); please report it"
-        unforeseen = RuntimeError(f"{job.source}: {what}")
+        unforeseen = RuntimeError(told(job.source, error))
         for target in job.targets[done:]:
             yield failed(job, target, unforeseen)
 
