@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import stat
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
@@ -10,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from isocore.choices import FORMATS, Format, distinct
+from isocore.choices import FORMATS, Choice, Format, distinct
 from isocore.requirements import REQUIREMENTS
 
+from .console import say
 from .convert_options import ConvertOptions, convert_options
 from .groups import GroupedCommand
 from .lists import listed
@@ -75,7 +77,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     check_template(options.name or "")
     _check_places(options)
     naming = Naming(output=options.output, output_dir=options.output_dir, template=options.name)
-    choices = distinct(choice for asked in options.isovalues for choice in asked)
+    choices = _choices_of(options)
     written = [("--report", path) for path in options.reports]
     more = (("--depfile", options.depfile), ("--ambiguities", options.ambiguities))
     written += [(option, path) for option, path in more if path is not None]
@@ -86,6 +88,16 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
         raise click.UsageError(f"--ambiguities {options.ambiguities}: is one file; give one input and one isovalue")
     threads = options.threads or max(1, default_threads() // min(options.at_once, len(jobs)))
     return [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
+
+
+def _choices_of(options: ConvertOptions) -> tuple[Choice, ...]:
+    """Each isovalue once; a word about those that were asked for twice."""
+    asked = [choice for several in options.isovalues for choice in several]
+    twice = [str(choice) for choice, times in Counter(asked).items() if times > 1]
+    if twice:
+        shown = ", ".join(twice[:5]) + (f" and {len(twice) - 5:,} more" if len(twice) > 5 else "")
+        say(f"isocore: warning: -i {shown}: asked for more than once, drawn once")
+    return distinct(asked)
 
 
 def _format(options: ConvertOptions) -> Format:

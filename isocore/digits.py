@@ -16,6 +16,13 @@ def exact(value: float) -> str:
     return repr(float(value) + 0.0).removesuffix(".0")  # -0 is written as 0, which it equals
 
 
+def counted(*values: float) -> tuple[str, ...]:
+    """Whole numbers in full, with separators; others as legible has them."""
+    if all(float(value).is_integer() and abs(value) < 2**53 for value in values):
+        return tuple(f"{int(value):,}" for value in values)
+    return legible(*values)
+
+
 def legible(*values: float, digits: int = USUAL_DIGITS) -> tuple[str, ...]:
     """Texts of so many digits, or of as many more as different numbers need to look different."""
     different = len(set(values))

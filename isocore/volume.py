@@ -20,6 +20,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from isocore.digits import exact
 from isocore.errors import FieldError
 
 Space = Literal["ras", "lps", "las", "index", "native"]
@@ -65,7 +66,8 @@ class Volume:
         if not samples.flags.f_contiguous:
             raise FieldError("samples must be in Fortran order (i fastest)")
         if not (math.isfinite(self.slope) and math.isfinite(self.intercept) and self.slope != 0):
-            raise FieldError(f"slope {self.slope:g} and intercept {self.intercept:g} do not scale the samples")
+            scale = f"slope {exact(self.slope)} and intercept {exact(self.intercept)}"
+            raise FieldError(f"{scale} do not scale the samples")
         affine = np.eye(4) if self.affine is None else np.array(self.affine, dtype=np.float64)
         if affine.shape != (4, 4) or not np.isfinite(affine).all():
             raise FieldError("the affine must be a finite 4x4 matrix")

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from isocore.cli.convert import convert
 from isocore.cli.info import drawn, info
 from shapes import SAMPLES
 from small_files import ball, write_nifti
@@ -102,3 +103,28 @@ def test_a_histogram_is_drawn_in_the_width_it_has() -> None:
     lines = drawn(Bars(0.0, 4.0, (1_000_000, 0, 1, 5)))
     assert len(lines) == 7 and all(len(line) <= 6 for line in lines[:-1])
     assert lines[0].strip() == "█" and lines[-2][4] != " " and lines[-2][3] == " "
+
+
+def test_what_info_offers_draws_the_same_surface(tmp_path: Path) -> None:
+    """Its numbers are exact: `-i` with one of them gives the bytes that `-i otsu` and the others give."""
+    scale = np.random.default_rng(0).normal(1, 1e-7, (12, 12, 12))
+    path = write_nifti(tmp_path / "pressure.nii", 101325 * scale.astype(np.float64))
+    offered = [line.split() for line in run(path).stdout.splitlines() if line.lstrip().startswith("isovalue")]
+    assert len(offered) == 4
+    for _, number, _, choice, *_ in offered:
+        made = []
+        for asked in (number, choice):
+            out = tmp_path / "out.ply"
+            assert CliRunner().invoke(convert, [str(path), "-i", asked, "-o", str(out)]).exit_code == 0
+            made.append(out.read_bytes())
+        assert made[0] == made[1]
+
+
+def test_the_range_is_shown_in_the_digits_of_its_type(tmp_path: Path) -> None:
+    """A fill value can be pasted behind --ignore."""
+    samples = ball()
+    samples[0, 0, 0] = np.finfo(np.float32).min
+    path = write_nifti(tmp_path / "ball.nii", samples)
+    (line,) = [line for line in run(path).stdout.splitlines() if line.lstrip().startswith("range")]
+    assert "-3.4028235e+38 to" in line
+    assert "-3.4" not in run(path, "--ignore", line.split()[1]).stdout.split("warning")[0]

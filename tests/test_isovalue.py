@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import numpy.typing as npt
 import pytest
+from click.testing import CliRunner
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from isocore.cli.convert import convert
+from small_files import ball, write_nifti
 
 from isocore.choices import Auto, Number, Otsu, Percentile, parse_choice, parse_choices
+from isocore.digits import counted, exact, legible
 from isocore.errors import FieldError, OptionError
 from isocore.histogram import histogram
 from isocore.isovalue import choose, is_two_valued, otsu, percentile
@@ -212,3 +218,41 @@ def test_nonsense_is_refused_by_name(text: str) -> None:
     """The message names the option's value."""
     with pytest.raises(OptionError, match="isovalue"):
         parse_choices((text,))
+
+
+@pytest.mark.parametrize(
+    ("values", "texts"),
+    [
+        ((101325.0, 101325.00005, 101325.0001), ("101325", "101325.00005", "101325.0001")),
+        ((0.0, 1.0, 0.5), ("0", "1", "0.5")),
+        ((152.054443359375, 130.0, 200.0), ("152.054", "130", "200")),
+        ((0.1, 0.1, 0.30000000000000004), ("0.1", "0.1", "0.3")),
+        ((0.3, 0.30000000000000004), ("0.3", "0.30000000000000004")),
+        ((-0.0, 1e300), ("0", "1e+300")),
+    ],
+)
+def test_different_numbers_look_different(values: tuple[float, ...], texts: tuple[str, ...]) -> None:
+    """With six digits, or as many more as they need."""
+    assert legible(*values) == texts
+
+
+def test_counts_are_shown_in_full() -> None:
+    """A gate says 1,234,567, not 1.23457e+06."""
+    assert counted(1_234_567.0, 1_234_568.0) == ("1,234,567", "1,234,568")
+    assert counted(0.25, 2.0) == ("0.25", "2")
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_an_exact_text_reads_back(value: float) -> None:
+    """Whatever the number, and without a needless .0."""
+    assert float(exact(value)) == value and not exact(value).endswith(".0")
+
+
+def test_an_isovalue_asked_for_twice_is_drawn_once_and_told(tmp_path: Path) -> None:
+    """Not dropped without a word; ranges that meet count, too."""
+    path = write_nifti(tmp_path / "ball.nii", ball())
+    arguments = [str(path), "-i", "40", "-i", "40:60:3", "-i", "60", "-d", str(tmp_path / "out")]
+    result = CliRunner().invoke(convert, arguments)
+    assert result.exit_code == 0 and "-i 40, 60: asked for more than once, drawn once" in result.stderr
+    made = sorted(path.name for path in (tmp_path / "out").glob("*.ply"))
+    assert made == ["ball_40.ply", "ball_50.ply", "ball_60.ply"]

@@ -12,6 +12,7 @@ from isocore import _kernels
 from isocore.benches.rivals import RIVALS, Cells
 from isocore.benches.thinning import Table
 from isocore.errors import FieldError
+from isocore.histogram import histogram
 from isocore.volume import Volume
 
 _COLUMNS = ("method", "registered", "visited", "intersected", "visited / intersected", "build s", "search s")
@@ -24,10 +25,11 @@ def grid_bench(volume: Volume, *, isovalues: int = 20, threads: int = 1) -> list
     The rivals search and do not draw; the walk draws as it goes, so its seconds count both.
     """
     heights = _heights(volume)
-    finite = heights[np.isfinite(heights)]
-    if not len(finite) or finite.min() == finite.max():
+    spread = histogram(volume, threads=threads)
+    if not spread.low < spread.high:
         raise FieldError("a constant volume has no isosurfaces to time")
-    asked = [float(height) for height in np.linspace(finite.min(), finite.max(), isovalues + 2)[1:-1]]
+    ends = (-spread.high, -spread.low) if volume.inside_is_below else (spread.low, spread.high)
+    asked = np.linspace(*ends, isovalues + 2)[1:-1].tolist()
     cells = _cells(heights)
     rows = []
     for rival in RIVALS:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Any
 
+from isocore.digits import counted
 from isocore.errors import OptionError
 from isocore.report.keys import run_as_dict
 from isocore.report.record import BatchReport, RunReport
@@ -38,14 +39,16 @@ class Limit:
         """What breaks the limit, or nothing. A number that was known and is not any more breaks it, too."""
         value, before = value_of(new, self.key), None if old is None else value_of(old, self.key)
         if value is None:
-            return "" if before is None else f"{self.key} is not known, was {before:,.6g} ({self.text})"
+            return "" if before is None else f"{self.key} is not known, was {counted(before)[0]} ({self.text})"
         if self.percent and before is None:
             return ""
         bound = self.number if before is None or not self.percent else before + abs(before) * self.number / 100
         if not (value > bound if self.above else value < bound):
             return ""
-        now = f"{self.key} is {value:,.6g}"
-        return f"{now}, was {before:,.6g} ({self.text})" if before is not None else f"{now} ({self.text})"
+        if before is None:
+            return f"{self.key} is {counted(value)[0]} ({self.text})"
+        now, then = counted(value, before)
+        return f"{self.key} is {now}, was {then} ({self.text})"
 
 
 def parse_limit(text: str) -> Limit:

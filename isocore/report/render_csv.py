@@ -6,6 +6,7 @@ import csv
 import io
 from typing import Any
 
+from isocore.digits import exact
 from isocore.report.keys import run_as_dict
 from isocore.report.record import BatchReport
 from isocore.report.texts import shown
@@ -64,4 +65,4 @@ def _cell(value: Any) -> str:
     if isinstance(value, list):
         separator = "; " if value and isinstance(value[0], str) else " "
         return separator.join(_cell(item) for item in value)
-    return f"{value:.9g}" if isinstance(value, float) else str(value)
+    return exact(value) if isinstance(value, float) else str(value)

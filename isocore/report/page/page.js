@@ -7,7 +7,9 @@ const dig = (run, path) => path.split(".").reduce((part, key) => (part == null ?
 const isNumber = (value) => typeof value === "number";
 const whole = (value) => (isNumber(value) ? value.toLocaleString("en") : "");
 const short = (digits) => (value) => (isNumber(value) ? value.toFixed(digits) : "");
-const plain = (value) => (isNumber(value) ? String(Number(value.toPrecision(6))) : value ?? "");
+const rounded = (digits) => (value) => (isNumber(value) ? String(Number(value.toPrecision(digits))) : value ?? "");
+const plain = rounded(9);
+const precise = rounded(15); // of samples and isovalues, which may differ in their last digits only
 const fileName = (path) => path.split(/[\\/]/).pop();
 const isEmpty = (run) => run.surface != null && !run.surface.triangles;
 const closed = (run) =>
@@ -24,7 +26,7 @@ function make(tag, text = "", name = "") {
 const columns = [
   { title: "file", value: (run) => fileName(run.output === "-" ? run.source : run.output), show: String },
   { title: "status", value: (run) => (run.missed.length ? run.status + ", missed" : run.status), show: String },
-  { title: "isovalue", value: (run) => run.isovalue, show: plain, number: true },
+  { title: "isovalue", value: (run) => run.isovalue, show: precise, number: true },
   { title: "triangles", value: (run) => dig(run, "surface.triangles"), show: whole, number: true },
   { title: "reference", value: (run) => dig(run, "reference.triangles"), show: whole, number: true },
   { title: "ratio", value: (run) => dig(run, "ratio.triangles"), show: short(2), number: true },
@@ -158,23 +160,24 @@ function drawHistogram(run) {
   });
   const x = ((run.isovalue - spread.low) / (spread.high - spread.low)) * width;
   if (isNumber(run.isovalue) && x >= 0 && x <= width) picture.append(svg("line", { x1: x, x2: x, y1: 0, y2: height }));
-  picture.append(svg("text", { x: 0, y: height + 13 }, plain(spread.low)));
-  picture.append(svg("text", { x: width, y: height + 13, "text-anchor": "end" }, plain(spread.high)));
+  picture.append(svg("text", { x: 0, y: height + 13 }, precise(spread.low)));
+  picture.append(svg("text", { x: width, y: height + 13, "text-anchor": "end" }, precise(spread.high)));
   place.append(picture);
-  if (isNumber(run.isovalue)) place.append(make("p", `isovalue ${plain(run.isovalue)}: ${run.chosen}`, "quiet"));
+  if (isNumber(run.isovalue)) place.append(make("p", `isovalue ${precise(run.isovalue)}: ${run.chosen}`, "quiet"));
 }
 
 function listFacts(run) {
   const list = at("#facts");
   list.replaceChildren();
   const add = (key, value) => {
+    const show = key === "isovalue" || key === "range" ? precise : plain;
     if (value == null || value === "" || key.startsWith("histogram") || key === "mesh") return;
     if (Array.isArray(value)) {
-      if (value.length) list.append(make("dt", key), make("dd", value.flat(3).map(plain).join(", ")));
+      if (value.length) list.append(make("dt", key), make("dd", value.flat(3).map(show).join(", ")));
     } else if (typeof value === "object") {
       for (const [inner, part] of Object.entries(value)) add(`${key}.${inner}`, part);
     } else {
-      list.append(make("dt", key), make("dd", isNumber(value) ? plain(value) : String(value)));
+      list.append(make("dt", key), make("dd", isNumber(value) ? show(value) : String(value)));
     }
   };
   for (const [key, value] of Object.entries(run)) add(key, value);
