@@ -16,7 +16,7 @@ CMAKE   := $(BIN)/cmake -S isocore/kernels -G Ninja -DCMAKE_MAKE_PROGRAM=$(abspa
 SHELL   := bash
 .SHELLFLAGS := -o pipefail -c
 
-.PHONY: help develop demo meshes test check lint types kernels bench golden samples dist clean
+.PHONY: help develop demo meshes test check lint types kernels bench fuzz golden samples dist clean
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
 
@@ -72,6 +72,10 @@ kernels: $(TOOLS)  ## the kernels' own tests, under sanitizers
 bench: $(BUILT)  ## time us against the peers, in one process; and the memory
 	$(BIN)/python -m pip install -q ".[bench]" --no-build-isolation --no-deps && $(BIN)/python -m pip install -q vtk scikit-image nilearn
 	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py && $(BIN)/python tests/bench/memory.py
+
+fuzz: $(READY)  ## damaged inputs for hours: SECONDS=3600 or RUNS=, JOBS=1, SEED=1, TARGETS=; build/fuzz has what failed
+	$(BIN)/python tests/fuzz/run.py $(if $(RUNS),--runs $(RUNS),--seconds $(or $(SECONDS),3600)) --jobs $(or $(JOBS),1) \
+	  --seed $(or $(SEED),1) $(if $(TARGETS),--targets $(TARGETS))
 
 samples: $(BUILT)  ## make sample_volumes/ again
 	$(BIN)/python sample_volumes/make.py

@@ -1,0 +1,231 @@
+"""Sound inputs to begin with: a small one of every reader in each of its encodings, an index, a stamp, a report.
+
+They are written by the tests' own writers and by other people's libraries; nothing of what is tested writes an input.
+"""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import json
+import struct
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import vtu_files
+from fuzz.mutations import (
+    Mutator,
+    damaged_base64,
+    damaged_bytes,
+    damaged_json,
+    damaged_text,
+    damaged_xml,
+    of_fields,
+    some,
+    within,
+)
+from scans import ramp, save
+
+Files = dict[str, bytes]
+
+
+@dataclass(frozen=True)
+class Seed:
+    """A sound input. files: by name, the one to read first. mutators: of each file that is to be damaged."""
+
+    files: Files
+    mutators: dict[str, Mutator]
+
+
+def _span(kind: str, at: int, count: int = 1) -> list[tuple[int, str]]:
+    return [(at + n * struct.calcsize(f"={kind}"), kind) for n in range(count)]
+
+
+#: Offset and kind of the numbers in a header that decide something.
+NIFTI_1 = [
+    *_span("i", 0), *_span("h", 40, 8), *_span("h", 70, 2), *_span("f", 76, 8), *_span("f", 108, 3), *_span("b", 123),
+    *_span("f", 124, 2), *_span("i", 140, 2), *_span("h", 252, 2), *_span("f", 256, 18), *_span("i", 344),
+    *_span("i", 348),
+]  # fmt: skip
+NIFTI_2 = [
+    *_span("i", 0), *_span("q", 4), *_span("h", 12, 2), *_span("q", 16, 8), *_span("d", 104, 8), *_span("q", 168),
+    *_span("d", 176, 4), *_span("i", 344, 2), *_span("d", 352, 18), *_span("i", 500),
+]  # fmt: skip
+
+
+def _written(name: str, samples: np.ndarray) -> Files:
+    """The files that a library writes under this name, the named one first."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = save(Path(folder) / name, samples)
+        ordered = sorted(Path(folder).iterdir(), key=lambda file: file != path)
+        return {file.name: file.read_bytes() for file in ordered}
+
+
+def _nifti_2(samples: np.ndarray) -> bytes:
+    import nibabel as nib
+
+    return bytes(nib.Nifti2Image(samples, np.diag([1.0, 2.0, 3.0, 1.0])).to_bytes())
+
+
+def nifti() -> Iterator[Seed]:
+    """One file: both versions, both byte orders, several types, packed or not, of one volume and of several."""
+    for dtype, shape in (("<i2", (4, 5, 6)), (">f4", (3, 4, 5)), ("u1", (3, 3, 3, 2)), ("<f8", (2, 3, 4))):
+        files = _written("a.nii", ramp(shape, dtype))
+        header = some(of_fields(NIFTI_1, dtype[0] if dtype[0] == ">" else "<"), damaged_bytes)
+        yield Seed(files, {"a.nii": header})
+        packed = gzip.compress(files["a.nii"], 1, mtime=0)
+        yield Seed({"a.nii.gz": packed}, {"a.nii.gz": some(within("gzip", header))})
+    header = some(of_fields(NIFTI_2, "<"), damaged_bytes)
+    yield Seed({"b.nii": _nifti_2(ramp((4, 5, 6), "f4"))}, {"b.nii": header})
+
+
+def analyze() -> Iterator[Seed]:
+    """Header and image apart: NIfTI pairs, and Analyze, which has no magic."""
+    header = some(of_fields(NIFTI_1, "<"), damaged_bytes)
+    for magic in (b"ni1\0", bytes(4)):
+        files = _written("c.hdr", ramp((4, 5, 6)))
+        files["c.hdr"] = files["c.hdr"][:344] + magic + files["c.hdr"][348:]
+        yield Seed(files, {"c.hdr": header, "c.img": damaged_bytes})
+        packed = {f"{name}.gz": gzip.compress(data, 1, mtime=0) for name, data in files.items()}
+        yield Seed(packed, {"c.hdr.gz": within("gzip", header), "c.img.gz": within("gzip", damaged_bytes)})
+
+
+_NRRD = (
+    "NRRD0005\n# a comment\ntype: {type}\ndimension: 3\nspace: right-anterior-superior\nsizes: 4 5 6\n"
+    "space directions: (1,0,0) (0,2,0) (0,0,3)\nkinds: domain domain domain\nendian: little\nencoding: {encoding}\n"
+    'space origin: (1,2,3)\nspace units: "mm" "mm" "mm"\nkey:=value\n{more}'
+)
+_PLAIN_NRRD = (
+    "NRRD0001\ntype: {type}\ndimension: 4\nsizes: 2 4 5 6\nspacings: nan 1 2 3\naxis mins: nan 0 0 0\nendian: big\n"
+    "centers: none cell cell cell\nbyte skip: 0\nline skip: 0\nencoding: {encoding}\n{more}"
+)
+
+
+def _encoded(samples: np.ndarray, encoding: str) -> bytes:
+    plain = samples.tobytes(order="F")
+    numbers = " ".join(str(number) for number in samples.ravel(order="F").tolist())
+    return {
+        "raw": plain,
+        "gzip": gzip.compress(plain, 1, mtime=0),
+        "bzip2": bz2.compress(plain, 1),
+        "ascii": numbers.encode(),
+        "hex": plain.hex().encode(),
+    }[encoding]
+
+
+def nrrd() -> Iterator[Seed]:
+    """Samples behind the header, in each encoding."""
+    for encoding in ("raw", "gzip", "bzip2", "ascii", "hex"):
+        for head, shape, dtype in ((_NRRD, (4, 5, 6), "<i2"), (_PLAIN_NRRD, (2, 4, 5, 6), ">f4")):
+            text = head.format(type="short" if "i" in dtype else "float", encoding=encoding, more="\n").encode()
+            content = text + _encoded(ramp(shape, dtype), encoding)
+            yield Seed({"d.nrrd": content}, {"d.nrrd": some(_of_head(text), damaged_bytes)})
+
+
+def _of_head(head: bytes) -> Mutator:
+    """Damage to the text before the samples."""
+
+    def mutate(random: object, content: bytes) -> bytes:
+        return damaged_text(random, content[: len(head)]) + content[len(head) :]  # type: ignore[arg-type]
+
+    return mutate
+
+
+def nhdr() -> Iterator[Seed]:
+    """Samples in one file beside the header, in a list of them, in numbered ones."""
+    samples = ramp((4, 5, 6))
+    slices = [samples[:, :, k].tobytes(order="F") for k in range(6)]
+    for encoding in ("raw", "gzip"):
+        packed = (lambda data: gzip.compress(data, 1, mtime=0)) if encoding == "gzip" else bytes
+        for more, names in (
+            ("data file: e.raw\n", ["e.raw"]),
+            ("data file: LIST\n" + "".join(f"s{k}.raw\n" for k in range(6)), [f"s{k}.raw" for k in range(6)]),
+            ("data file: s%d.raw 0 5 1\n", [f"s{k}.raw" for k in range(6)]),
+        ):
+            contents = slices if len(names) == 6 else [b"".join(slices)]
+            files = {"e.nhdr": _NRRD.format(type="short", encoding=encoding, more=more).encode()}
+            files |= {name: packed(content) for name, content in zip(names, contents, strict=True)}
+            data = within("gzip", damaged_bytes) if encoding == "gzip" else damaged_bytes
+            yield Seed(files, {"e.nhdr": some(damaged_text, damaged_text, damaged_bytes), names[-1]: data})
+
+
+def raw() -> Iterator[Seed]:
+    """Bare samples under a sidecar, packed or not."""
+    side = {"shape": [4, 5, 6], "dtype": "int16", "spacing": [1, 2, 3.5], "origin": [0, 0, 9], "byte_order": "little"}
+    content = ramp((4, 5, 6)).tobytes(order="F")
+    for offset in (0, 7):
+        sidecar = json.dumps(side | {"offset": offset}).encode()
+        plain = bytes(offset) + content
+        yield Seed({"f.raw": plain, "f.raw.json": sidecar}, {"f.raw": damaged_bytes, "f.raw.json": some(damaged_json)})
+        packed = gzip.compress(plain, 1, mtime=0)
+        yield Seed(
+            {"f.raw.gz": packed, "f.raw.json": sidecar},
+            {"f.raw.gz": within("gzip", damaged_bytes), "f.raw.json": some(damaged_json)},
+        )
+
+
+def packed() -> Iterator[Seed]:
+    """Members, checksums, tails and cuts of gzip and bzip2, around sound headers."""
+    content = _written("g.nii", np.random.default_rng(1).integers(0, 9, (9, 9, 9)).astype("<i2"))["g.nii"]
+    yield Seed({"g.nii.gz": gzip.compress(content, 6, mtime=0)}, {"g.nii.gz": some(within("gzip", bytes_alone))})
+    yield Seed({"g.nii": bz2.compress(content)}, {"g.nii": some(within("bzip2", bytes_alone))})
+    members = b"".join(gzip.compress(content[at : at + 500], 1, mtime=0) for at in range(0, len(content), 500))
+    yield Seed({"g.nii.gz": members}, {"g.nii.gz": some(damaged_bytes)})
+
+
+def bytes_alone(random: object, content: bytes) -> bytes:
+    """Left as it is: the damage is to the packing."""
+    return content
+
+
+def _meshes() -> list[vtu_files.Mesh]:
+    """Tetrahedra, and one of each other shape, each with a field of points, a vector and a field of cells."""
+    found = []
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    for cells in (
+        [(10, [0, 1, 2, 4]), (10, [1, 2, 4, 7]), (10, [1, 2, 3, 7])],
+        [(12, [0, 1, 3, 2, 4, 5, 7, 6])],
+        [(13, [0, 1, 2, 4, 5, 6]), (14, [1, 3, 7, 5, 2]), (11, [0, 1, 2, 3, 4, 5, 6, 7]), (5, [0, 1, 2])],
+    ):
+        found.append(
+            vtu_files.Mesh(
+                corners,
+                cells,
+                {"p": np.arange(8.0), "v": np.arange(24.0, dtype="f4").reshape(8, 3)},
+                {"c": np.arange(len(cells), dtype="i4")},
+            )
+        )
+    return found
+
+
+def _vtu(meshes: vtu_files.Mesh | list[vtu_files.Mesh], encoding: vtu_files.Encoding) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        return vtu_files.write(Path(folder) / "h.vtu", meshes, encoding).read_bytes()
+
+
+def vtu() -> Iterator[Seed]:
+    """Every encoding, one piece and two."""
+    meshes = _meshes()
+    for number, encoding in enumerate(vtu_files.every_encoding()):
+        content = _vtu(meshes if number % 4 == 0 else meshes[number % 3], encoding)
+        mutators = [damaged_xml, damaged_xml, damaged_text]
+        mutators.append(damaged_base64 if encoding.format == "binary" else damaged_bytes)
+        yield Seed({"h.vtu": content}, {"h.vtu": some(*mutators)})
+    wide = _vtu(meshes[0], vtu_files.Encoding()).decode()
+    for unusual in (wide.encode("utf-16"), wide.replace("<Points>", "<Points><!-- 1 -->").encode()):
+        yield Seed({"h.vtu": unusual}, {"h.vtu": some(damaged_xml, damaged_bytes)})
+
+
+@cache
+def seeds_of(reader: str) -> tuple[Seed, ...]:
+    """All seeds of one reader."""
+    return tuple(READERS[reader]())
+
+
+READERS = {
+    "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "raw": raw, "gzip": packed, "vtu": vtu,
+}  # fmt: skip
