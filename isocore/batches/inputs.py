@@ -13,7 +13,7 @@ from pathlib import Path, PurePath
 
 from isocore.batches.places import place_of
 from isocore.errors import OptionError
-from isocore.readers import SEARCHED, files_of, suffix_of
+from isocore.readers import SEARCHED, files_of, listed_files, suffix_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +55,8 @@ class Input:
 def find_inputs(names: Iterable[Path]) -> list[Input]:
     """Files as they are named; folders searched for known suffixes, in sorted order. No file twice.
 
+    What another of them lists as a piece or a step is left to that one.
+
     Raises OptionError for a folder without any.
     """
     named = [(name, _is_folder(name)) for name in names]
@@ -66,7 +68,8 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
             raise OptionError(f"{name}: holds no file isocore reads; known are {', '.join(SEARCHED)}")
         for item in inside:
             found.setdefault(place_of(item.path), replace(item, common=common))
-    return list(found.values())
+    listed = {place_of(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
+    return [item for place, item in found.items() if place not in listed]
 
 
 def _is_folder(name: Path) -> bool:

@@ -61,6 +61,12 @@ def files_of(path: Path) -> tuple[Path, ...]:
         return (path,)
 
 
+def listed_files(path: Path) -> tuple[Path, ...]:
+    """The files that `path` lists as its pieces or steps: fields of their own, which it stands for. Never an error."""
+    suffix = suffix_of(path)
+    return files_of(path)[1:] if suffix is not None and BY_SUFFIX[suffix].lists else ()
+
+
 def content_bytes(path: Path) -> int:
     """A guess at the bytes of an input with all that belongs to it, unpacked, by what costs no reading."""
     return sum(unpacked_bytes(file) for file in files_of(path))
@@ -116,6 +122,7 @@ __all__ = [
     "content_bytes",
     "count_volumes",
     "files_of",
+    "listed_files",
     "offered_fields",
     "read",
     "suffix_of",

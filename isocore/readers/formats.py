@@ -41,6 +41,7 @@ class Format:
     count: how many volumes a file holds, by its header; 1 for a mesh.
     files: those beside it that belong to it and exist, such as detached samples.
     fields: what a mesh offers to contour, fields of points before those of cells; () for a volume.
+    lists: its files are fields of their own, which are not to be converted a second time.
     unsearched: suffixes a folder is not searched for, because another file leads to those.
     """
 
@@ -49,6 +50,7 @@ class Format:
     count: Callable[[Path, ReadOptions], int] = _one_volume
     files: Callable[[Path], tuple[Path, ...]] = _nothing_beside
     fields: Callable[[Path], tuple[FieldInfo, ...]] = _no_choice
+    lists: bool = False
     unsearched: tuple[str, ...] = ()
 
 
@@ -64,6 +66,24 @@ def _vtu_fields(path: Path) -> tuple[FieldInfo, ...]:
     return vtu_fields(path)
 
 
+def _read_pvtu(path: Path, options: ReadOptions) -> CellMesh:
+    from isocore.readers.pvtu import read_pvtu
+
+    return read_pvtu(path, options)
+
+
+def _pvtu_files(path: Path) -> tuple[Path, ...]:
+    from isocore.readers.pvtu import pvtu_files
+
+    return pvtu_files(path)
+
+
+def _pvtu_fields(path: Path) -> tuple[FieldInfo, ...]:
+    from isocore.readers.pvtu import pvtu_fields
+
+    return pvtu_fields(path)
+
+
 FORMATS = (
     Format(
         suffixes=(".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"),
@@ -75,6 +95,7 @@ FORMATS = (
     Format(suffixes=(".nrrd", ".nhdr"), read=read_nrrd, count=count_nrrd, files=nrrd_files),
     Format(suffixes=(".raw", ".raw.gz"), read=read_raw, count=count_raw, files=raw_files),
     Format(suffixes=(".vtu",), read=_read_vtu, fields=_vtu_fields),
+    Format(suffixes=(".pvtu",), read=_read_pvtu, files=_pvtu_files, fields=_pvtu_fields, lists=True),
 )
 
 #: The row of each suffix.

@@ -68,7 +68,7 @@ STRANGERS = (
         (".mhd", ".mha"), _matches(rb"(ObjectType|NDims|Comment)\s*="),
     ),
     Stranger("a VTK image (ImageData)", "write it as NRRD or NIfTI", (".vti",), _vtk(rb"P?ImageData")),
-    Stranger("a list of the pieces of a VTK mesh", "give the .vtu files that it names", (".pvtu",),
+    Stranger("a list of the pieces of a VTK mesh", "", (".pvtu",),
              _vtk(b"PUnstructuredGrid")),
     Stranger("a list of the steps of a VTK series", "give the .vtu files that it names", (".pvd", ".vtu.series"),
              _vtk(b"Collection")),

@@ -27,7 +27,7 @@ class PieceData:
     values: flat, the components of each point, or of each cell, together.
     ghosts: marks of cells by the array's name; hidden: marks of points by `vtkGhostType`. faces: of polyhedra.
     degrees: (c, 3) of Lagrange and Bezier cells along their axes; weights: (n,) of rational Bezier cells.
-    old: the file is older than version 2.1 of VTK's.
+    old: the file is older than version 2.1 of VTK's. path: of the piece, where it has a file of its own.
     """
 
     points: npt.NDArray[Any]
@@ -41,6 +41,7 @@ class PieceData:
     degrees: npt.NDArray[Any] | None = None
     weights: npt.NDArray[Any] | None = None
     old: bool = False
+    path: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,7 @@ class Part:
 
 def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None) -> Part:
     """One piece without its ghosts. Raises InputError, FieldError."""
+    path = piece.path or path
     points = np.array(piece.points, dtype=np.float64)
     if not np.isfinite(points).all():
         raise InputError(f"{path}: some of its points have coordinates that are not finite; write it again")

@@ -27,7 +27,7 @@ def read_vtu(path: Pathlike, options: ReadOptions) -> CellMesh:
     """The mesh in the file `path` with the field that `options` choose."""
     name = os.fspath(path)
     with reading(path):
-        source = _open(name)
+        source = open_vtu(name)
         field = choose(name, source.fields, options)
         component = component_of(name, field, options.component)
         return assembled(name, source.pieces(field), field, component, options.mesh, options.ignore)
@@ -36,10 +36,11 @@ def read_vtu(path: Pathlike, options: ReadOptions) -> CellMesh:
 def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
     """The fields the file offers, those of points first, without reading their numbers."""
     with reading(path):
-        return tuple(sorted(_open(os.fspath(path)).fields, key=lambda field: field.of != "points"))
+        return tuple(sorted(open_vtu(os.fspath(path)).fields, key=lambda field: field.of != "points"))
 
 
-def _open(path: str) -> Source:
+def open_vtu(path: str) -> Source:
+    """The file's fields and pieces, its tags read and none of its numbers."""
     with Path(path).open("rb") as file:
         head = file.read(64)
         if not head:

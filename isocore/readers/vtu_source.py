@@ -20,6 +20,10 @@ from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
 _LISTED = ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets")
 
 
+class NoCells(FieldError):
+    """A file without cells, which is as good as any among the pieces of a mesh."""
+
+
 class Source(Protocol):
     """A file whose fields are known and whose pieces can be read."""
 
@@ -36,7 +40,7 @@ class MappedSource:
         self.arrays = ArrayReader(path, data, layout)
         self.full = [piece for piece in layout.pieces if piece.points and piece.cells]
         if not self.full:
-            raise FieldError(f"{path}: holds no cells, so there is nothing to contour")
+            raise NoCells(f"{path}: holds no cells, so there is nothing to contour")
 
     @property
     def fields(self) -> tuple[FieldInfo, ...]:
@@ -57,6 +61,7 @@ class MappedSource:
                     f" and {values.components} in another; write it again"
                 )
             yield PieceData(
+                path=self.path,
                 points=read(self._tag(piece, "Points", None), 3 * piece.points).reshape(-1, 3),
                 types=read(self._tag(piece, "Cells", "types"), piece.cells),
                 offsets=read(self._tag(piece, "Cells", "offsets"), piece.cells),

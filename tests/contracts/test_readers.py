@@ -17,7 +17,9 @@ from isocore.readers import SEARCHED, ReadOptions, count_volumes, read, suffix_o
 from isocore.readers.formats import BY_SUFFIX
 from isocore.volume import Volume
 
-VOLUMES = [suffix for suffix in BY_SUFFIX if suffix != ".vtu"]
+#: Meshes, and files of one volume only, which have tests of their own.
+OF_VTK = {".vtu", ".pvtu", ".pvd", ".vtu.series", ".pvtu.series", ".vtk", ".vtk.series", ".vti", ".vti.series"}
+VOLUMES = [suffix for suffix in BY_SUFFIX if suffix not in OF_VTK]
 WITH_HEADER = [suffix for suffix in VOLUMES if ".raw" not in suffix]
 
 
@@ -106,7 +108,7 @@ def test_a_folder_is_refused(tmp_path: Path, suffix: str) -> None:
     assert isinstance(error, InputError) and "is a folder" in str(error)
 
 
-@pytest.mark.parametrize("name", ["scan", "scan.gz", "scan.tiff", "nii"])
+@pytest.mark.parametrize("name", ["scan", "scan.gz", "scan.xyz", "nii"])
 def test_an_unknown_suffix_is_refused_with_the_known_ones(tmp_path: Path, name: str) -> None:
     """The message is the list to choose from."""
     (tmp_path / name).write_bytes(b"x")

@@ -1,0 +1,141 @@
+"""Read a PVTU file: a mesh in pieces, each of which is a VTU file that it names.
+
+Only one piece is mapped at a time: there may be more of them than a process may keep open. A mesh of all pieces is
+made in vtk_mesh.py, which joins the points where they meet.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from xml.parsers import expat
+
+from isocore.cell_mesh import CellMesh
+from isocore.errors import FieldError, InputError, reading
+from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_fields import FieldInfo, choose, component_of
+from isocore.readers.vtk_mesh import assembled
+from isocore.readers.vtk_pieces import PieceData
+from isocore.readers.vtu import open_vtu
+from isocore.readers.vtu_source import NoCells
+
+_LONGEST = 64 << 20  # bytes of a list of pieces
+_NAMED = 5  # fields that a warning names
+
+
+class PiecesSource:
+    """The VTU files of a mesh, in their order, as if they were the pieces of one file."""
+
+    def __init__(self, path: str, files: list[Path]) -> None:
+        self.path = path
+        missing = [file for file in files if not file.is_file()]
+        if missing:
+            count = f"{len(missing):,} of its {len(files):,} pieces are missing, the first is"
+            one = f"one of its {len(files):,} pieces is missing,"
+            raise InputError(f"{path}: {one if len(missing) == 1 else count} {missing[0]}; copy it there")
+        self.files: list[Path] = []
+        common: dict[tuple[str, str], FieldInfo] = {}
+        partial: set[str] = set()
+        for file in files:
+            found: dict[tuple[str, str], FieldInfo] = {}
+            try:
+                found.update(((field.of, field.name), field) for field in open_vtu(os.fspath(file)).fields)
+            except NoCells:
+                continue
+            if not self.files:
+                common = found
+            kept = {key: field for key, field in common.items() if _alike(field, found.get(key))}
+            partial |= {name for _, name in (common.keys() | found.keys()) - kept.keys()}
+            common = kept
+            self.files.append(file)
+        if not self.files:
+            raise NoCells(f"{path}: none of its {len(files):,} pieces holds a cell, so there is nothing to contour")
+        self.fields = tuple(common.values())
+        self.partial = sorted(partial)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Of fields that not all pieces hold."""
+        if not self.partial:
+            return ()
+        more = f" and {len(self.partial) - _NAMED:,} more" if len(self.partial) > _NAMED else ""
+        names = ", ".join(self.partial[:_NAMED])
+        return (f"its pieces hold different fields; {names}{more} cannot be chosen, since not all of them hold it",)
+
+    def pieces(self, field: FieldInfo) -> Iterator[PieceData]:
+        for file in self.files:
+            with reading(file):
+                yield from open_vtu(os.fspath(file)).pieces(field)
+
+
+def read_pvtu(path: Path, options: ReadOptions) -> CellMesh:
+    """The mesh of all pieces with the field that `options` choose."""
+    with reading(path):
+        return read_pieces(PiecesSource(os.fspath(path), _pieces(path)), options)
+
+
+def read_pieces(source: PiecesSource, options: ReadOptions) -> CellMesh:
+    """The mesh of some VTU files."""
+    field = choose(source.path, source.fields, options)
+    component = component_of(source.path, field, options.component)
+    mesh = assembled(source.path, source.pieces(field), field, component, options.mesh)
+    return replace(mesh, warnings=source.warnings + mesh.warnings)
+
+
+def pvtu_fields(path: Path) -> tuple[FieldInfo, ...]:
+    """The fields that all pieces hold, those of points first."""
+    with reading(path):
+        fields = PiecesSource(os.fspath(path), _pieces(path)).fields
+        return tuple(sorted(fields, key=lambda field: field.of != "points"))
+
+
+def pvtu_files(path: Path) -> tuple[Path, ...]:
+    """The pieces that are there."""
+    return tuple(file for file in _pieces(path) if file.is_file())
+
+
+def _alike(field: FieldInfo, other: FieldInfo | None) -> bool:
+    return other is not None and field.components == other.components
+
+
+def _pieces(path: Path) -> list[Path]:
+    """The files that a .pvtu names, in its order; InputError where it is none or names none."""
+    if path.stat().st_size > _LONGEST:
+        raise InputError(f"{path}: is too long for a list of pieces; check that it is what its suffix says")
+    found: list[Path] = []
+    seen: list[str] = []
+    parser = expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        if not seen:
+            kind = attributes.get("type", "object of no type")
+            if tag != "VTKFile" or kind != "PUnstructuredGrid":
+                what = f"holds a VTK {kind}" if tag == "VTKFile" else f"starts with <{tag}>"
+                raise InputError(f"{path}: {what}; a .pvtu lists the pieces of an unstructured grid")
+        seen.append(tag)
+        if tag == "Piece":
+            name = attributes.get("Source", "").strip()
+            if not name:
+                raise InputError(f"{path}: piece {len(found) + 1:,} names no file; write it again")
+            found.append(beside(path, name))
+
+    parser.StartElementHandler = start
+    try:
+        parser.Parse(path.read_bytes(), True)
+    except expat.ExpatError as error:
+        raise InputError(
+            f"{path}: its XML is broken near line {error.lineno:,} ({expat.ErrorString(error.code)}); copy it again"
+        ) from error
+    if not found:
+        raise FieldError(f"{path}: names no pieces, so there is nothing to contour")
+    return found
+
+
+def beside(path: Path, name: str) -> Path:
+    """A file that another one names, from that one's folder. Backslashes of Windows part folders, too."""
+    if "\0" in name:
+        raise InputError(f"{path}: names the file {name[:40]!r}, which no file is called; write it again")
+    file = path.parent / name
+    return path.parent / name.replace("\\", "/") if "\\" in name and not file.exists() else file
