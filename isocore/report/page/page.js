@@ -11,7 +11,7 @@ const rounded = (digits) => (value) => (isNumber(value) ? String(Number(value.to
 const plain = rounded(9);
 const precise = rounded(15); // of samples and isovalues, which may differ in their last digits only
 const fileName = (path) => path.split(/[\\/]/).pop();
-const isEmpty = (run) => run.surface != null && !run.surface.triangles;
+const isEmpty = (run) => run.surface?.triangles === 0;
 const closed = (run) =>
   run.surface == null ? "" : isEmpty(run) || run.surface.watertight == null ? "-" : run.surface.watertight ? "yes" : "no";
 const ownSeconds = (run) => (run.surface ? run.seconds.own : null);
