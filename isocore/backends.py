@@ -16,6 +16,7 @@ from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Field, Outlook
 from isocore.job import Options
 from isocore.methods.climbing import prepare_climbing
+from isocore.methods.label_map import prepare_labels
 from isocore.methods.marching_cubes import prepare_marching_cubes
 from isocore.methods.thinning import prepare_thinning
 from isocore.surface import Surface
@@ -74,11 +75,21 @@ BACKENDS: dict[str, Backend] = {
             title="marching cubes; marching tetrahedra for meshes",
             accepts=(Volume, CellMesh),
             prepare=prepare_marching_cubes,
-            options=frozenset({"topology"}),
+            options=frozenset({"topology", "smooth"}),
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),
     )
 }
+
+#: What extracts label maps: not chosen by name but by asking for labels, and not by isovalue but by label.
+LABELS = Backend(
+    name="labels",
+    title="multiple material marching cubes",
+    accepts=(Volume,),
+    prepare=prepare_labels,
+    options=frozenset({"smooth", "background"}),
+    cites="Hege, Seebass, Stalling, Zoeckler 1997; Wu, Sullivan 2003",
+)
 
 
 def default_backend(field_type: type, outlook: Outlook) -> tuple[str, str]:
@@ -102,7 +113,7 @@ def prepare(field: Field, backend: str, options: Options, outlook: Outlook | Non
 
     Raises OptionError for an unknown name, a field it does not take, or an option it does not understand.
     """
-    row = BACKENDS.get(backend)
+    row = LABELS if backend == LABELS.name else BACKENDS.get(backend)
     if row is None:
         raise OptionError(f"{backend}: no such backend; choose one of {', '.join(BACKENDS)}")
     if not isinstance(field, row.accepts):
@@ -121,7 +132,8 @@ def extract(field: Field, isovalue: float, *, backend: str | None = None, option
 
 def check_options(backend: str, options: Options) -> None:
     """Refuse an option that the backend does not understand, rather than ignore it."""
-    of_others = frozenset().union(*(row.options for row in BACKENDS.values())) - BACKENDS[backend].options
+    rows = BACKENDS | {LABELS.name: LABELS}
+    of_others = frozenset().union(*(row.options for row in rows.values())) - rows[backend].options
     for option in fields(Options):
         if option.name in of_others and getattr(options, option.name) is not None:
             raise OptionError(f"--{option.name.replace('_', '-')}: is not an option of {backend}; leave it out")

@@ -84,6 +84,22 @@ class Climbing:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LabelFacts:
+    """One label of a label map.
+
+    name, color (`#rrggbb`): where they are known. voxels: its samples; voxel_volume: theirs, in cubed units of length.
+    neighbours: the labels it shares a border with, background too.
+    """
+
+    value: int
+    name: str = ""
+    color: str | None = None
+    voxels: int
+    voxel_volume: float
+    neighbours: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Findings:
     """What a method has to say about one surface, by the report's keys; facts: what no other key covers."""
 
@@ -91,6 +107,7 @@ class Findings:
     search: Search | None = None
     ambiguous: Ambiguous | None = None
     climbing: Climbing | None = None
+    label: LabelFacts | None = None
     facts: dict[str, Any] = field(default_factory=dict)
 
 
@@ -107,7 +124,8 @@ class Extraction:
     def facts(self) -> dict[str, Any]:
         """The findings as they stand in the report; what there is nothing to say about is left out."""
         found = self.findings
-        parts = {"error": found.error, "search": found.search, "ambiguous": found.ambiguous, "climbing": found.climbing}
+        names = ("error", "search", "ambiguous", "climbing", "label")
+        parts = {name: getattr(found, name) for name in names}
         return {key: keys_of(part) for key, part in parts.items() if part is not None} | found.facts
 
 

@@ -24,6 +24,8 @@ class Options:
     max_error: how far the reference's vertices may lie from the surface; a text is parsed.
     topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
         trilinear function does.
+    smooth: rounds of smoothing, in which no sample changes sides.
+    background: the label that is none; 0 by default. Of label maps only.
     """
 
     threads: int = 1
@@ -32,6 +34,8 @@ class Options:
     block_size: int | None = None
     max_error: MaxError | None = None
     topology: str | None = None
+    smooth: int | None = None
+    background: int | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.max_error, str):

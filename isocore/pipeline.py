@@ -132,6 +132,8 @@ def _asked(job: Job, target: Target) -> Asked:
             block_size=options.block_size,
             max_error=None if options.max_error is None else str(options.max_error),
             topology=options.topology,
+            smooth=options.smooth,
+            background=options.background,
             format=job.format,
             space=job.space,
             offset=None if job.offset is None else str(job.offset),

@@ -6,6 +6,7 @@ Samples keep their stored type; slope and intercept travel beside them. World is
 from __future__ import annotations
 
 import math
+import struct
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from isocore.readers.packed import Packed, packing_by_suffix, packing_of
 from isocore.readers.pointers import absence_beside
 from isocore.readers.sample_types import contourable, from_float128
 from isocore.volume import Volume
+
+#: Extensions longer than this are not looked through.
+_MOST_EXTENSION_BYTES = 1 << 24
 
 
 def read_nifti(path: Path, options: ReadOptions) -> Volume:
@@ -54,6 +58,26 @@ def count_nifti(path: Path, options: ReadOptions) -> int:
 def nifti_files(path: Path) -> tuple[Path, ...]:
     """The image of a header, or the header of an image, where it is there."""
     return tuple(file for file in _pair(path) if file not in (path, None) and file.is_file())
+
+
+def extension_texts(path: Path) -> list[bytes]:
+    """The contents of the extensions behind a single file's header, in their order; what is damaged ends the list."""
+    with Packed(path, packing=packing_of(path)) as source:
+        head = source.read(LONGEST)
+        header = parsed(head)
+        size = header.sizeof_hdr
+        end = min(int(_first_byte(header, None)), size + _MOST_EXTENSION_BYTES)
+        block = (head + source.read(max(0, end - len(head))))[:end]
+    if block[size : size + 1] != b"\1":
+        return []
+    texts, at, order = [], size + 4, "<" if header.endianness == "<" else ">"
+    while at + 8 <= len(block):
+        length, _ = struct.unpack(f"{order}ii", block[at : at + 8])
+        if length < 8 or at + length > len(block):
+            break
+        texts.append(block[at + 8 : at + length])
+        at += length
+    return texts
 
 
 def _header(path: Path) -> Any:

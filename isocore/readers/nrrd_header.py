@@ -77,6 +77,14 @@ def parsed(path: Path) -> Head:
         return Head(fields, file.tell(), tuple(files))
 
 
+def remarks(path: Path) -> dict[str, str]:
+    """The key:=value lines of the head of `path`."""
+    with path.open("rb") as file:
+        file.readline(_MOST_BYTES)
+        pairs = (line.partition(":=") for line in _lines(file))
+        return {key.strip(): value.strip() for key, mark, value in pairs if mark}
+
+
 def data_files_of(path: Path) -> Head:
     """Only what the head of `path` says about data files, however damaged the rest of it is."""
     with path.open("rb") as file:

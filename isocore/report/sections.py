@@ -18,6 +18,8 @@ class Given:
     block_size: int | None = None
     max_error: str | None = None
     topology: str | None = None
+    smooth: int | None = None
+    background: int | None = None
     format: str
     space: str
     offset: str | None = None

@@ -111,6 +111,23 @@ void separate_fans(const LabelMesh& mesh, Solid& solid) {
 
 }  // namespace
 
+Array<std::uint32_t> neighbours(const LabelMesh& mesh) {
+    // A cell's triangles follow one another, and most have the same two sides.
+    std::vector<std::uint64_t> pairs;
+    for (std::size_t n = 0; n < mesh.sides.size(); n += 2) {
+        const std::uint64_t pair = std::uint64_t{mesh.sides[n]} << 32 | mesh.sides[n + 1];
+        if (pairs.empty() || pairs.back() != pair) pairs.push_back(pair);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    Array<std::uint32_t> out;
+    for (const std::uint64_t pair : pairs) {
+        out.push_back(static_cast<std::uint32_t>(pair >> 32));
+        out.push_back(static_cast<std::uint32_t>(pair));
+    }
+    return out;
+}
+
 Solids::Solids(const LabelMesh& mesh, std::size_t ranks) : sided_(mesh.sides.size()), starts_(ranks + 2, 0) {
     for (const std::uint32_t rank : mesh.sides) ++starts_[rank + 2];
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());

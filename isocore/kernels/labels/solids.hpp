@@ -15,6 +15,9 @@ struct Solid {
     Array<std::int32_t> shared;     // per vertex: its number in the shared mesh
 };
 
+// The pairs of ranks that share a border, each once, the higher first: in ascending order, two numbers a pair.
+Array<std::uint32_t> neighbours(const LabelMesh& mesh);
+
 // Which triangles have a label on one of their sides: a list per rank.
 class Solids {
   public:

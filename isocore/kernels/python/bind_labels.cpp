@@ -49,6 +49,8 @@ class LabelSurfaces {
                            to_numpy(std::move(solid.shared)));
     }
 
+    nb::object neighbours() const { return to_numpy(labels::neighbours(mesh_), 2); }
+
     // All that is shared, copied: for tests, and for whoever wants the whole mesh.
     nb::object shared(const NamedTuple& label_mesh) const {
         auto copy = mesh_;
@@ -102,6 +104,7 @@ void bind_labels(nb::module_& module) {
     nb::class_<LabelSurfaces>(module, "LabelSurfaces")
         .def_prop_ro("vertices", &LabelSurfaces::vertices)
         .def_prop_ro("triangles", &LabelSurfaces::triangles)
+        .def("neighbours", &LabelSurfaces::neighbours)
         .def("smooth", &LabelSurfaces::smooth, arg("rounds"), arg("threads") = 1)
         .def(
             "solid", [=](LabelSurfaces& all, std::size_t rank) { return all.solid(rank, label_solid); }, arg("rank"))

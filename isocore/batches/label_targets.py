@@ -1,0 +1,74 @@
+"""Which labels of a file become surfaces, and what they are called. Asking for all of them takes reading the file."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from isocore.choices import Label, Labels
+from isocore.errors import IsocoreError
+from isocore.readers import read, suffix_of
+from isocore.readers.label_names import names_inside
+from isocore.readers.label_tables import LabelName
+from isocore.readers.options import ReadOptions
+from isocore.volume import Volume
+
+_UNSAFE = re.compile(r"[^\w.+-]+")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LabelRequest:
+    """What `--labels` and its companions ask for. names: of a table that goes before names inside the file."""
+
+    labels: Labels
+    background: int = 0
+    names: dict[int, LabelName] | None = None
+
+
+def label_choices(path: Path, request: LabelRequest, options: ReadOptions) -> tuple[Label, ...]:
+    """The labels of `path` that are asked for, in ascending order for `all`, else as they were written.
+
+    A file that cannot be read, or holds no labels, gives one choice, of the background: converting it will say why.
+    """
+    values = request.labels.values
+    if values is None:
+        values = _all_labels(path, request.background, options)
+    known = names_inside(path, suffix_of(path) or "", options.volume) | (request.names or {})
+    choices = []
+    for value in values:
+        label = known.get(value)
+        choices.append(Label(value, label.name if label else "", (label.colour if label else None) or palette(value)))
+    return tuple(choices) or (Label(request.background),)
+
+
+def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int, ...]:
+    from isocore.methods.label_map import take_census
+
+    try:
+        field = read(path, options)
+        if not isinstance(field, Volume):
+            return ()
+        values = take_census(field).values
+    except (IsocoreError, MemoryError):
+        return ()
+    return tuple(int(value) for value in values if value != background)
+
+
+def safe_names(choices: Iterable[Label]) -> dict[Label, str]:
+    """Of each label, a name that is one for a file too. Labels that share one get their number behind it."""
+    plain = {choice: _UNSAFE.sub("_", choice.name).strip("._") or f"label_{choice.value}" for choice in choices}
+    alike = Counter(name.casefold() for name in plain.values())
+    return {
+        choice: f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name for choice, name in plain.items()
+    }
+
+
+def palette(value: int) -> tuple[int, int, int]:
+    """A colour for a label without one: hues a golden section apart, so that neighbours differ."""
+    hue = value * 0.6180339887498949 % 1.0
+    parts = (abs(6 * ((hue + third) % 1.0) - 3) - 1 for third in (0.0, 2 / 3, 1 / 3))
+    red, green, blue = (round(70 + 170 * min(1.0, max(0.0, part))) for part in parts)
+    return red, green, blue

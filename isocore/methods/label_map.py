@@ -1,0 +1,122 @@
+"""Label maps: the surface of every label, from one mesh in which neighbours share their borders.
+
+Multiple material marching cubes: Hege, Seebass, Stalling, Zoeckler 1997; Wu, Sullivan 2003. Smoothing: Taubin 1995.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore import _kernels
+from isocore.choices import MOST_LABELS
+from isocore.errors import FieldError
+from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts, Outlook
+from isocore.job import Options
+from isocore.surface import place_fresh
+from isocore.volume import Volume
+
+
+def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
+    """Extract all labels at once; what is returned picks one, by its number.
+
+    Raises FieldError where the samples are no labels: fractions, infinities, or more than MOST_LABELS values.
+    """
+    if not isinstance(field, Volume):
+        raise FieldError("is a mesh, which holds no labels; leave out --labels")
+    volume, background = field, options.background or 0
+    census = take_census(volume)
+    ranks = _ranks(census.values, background)
+    surfaces = _kernels.label_surfaces(volume.samples, census.stored, ranks, options.threads)
+    if options.smooth:
+        surfaces.smooth(options.smooth, options.threads)
+    neighbours = _neighbours(surfaces, census.values, ranks, background)
+    rank_of = {int(value): int(rank) for value, rank in zip(census.values, ranks, strict=True) if rank}
+    count_of = {int(value): int(count) for value, count in zip(census.values, census.counts, strict=True)}
+    voxel = abs(float(np.linalg.det(volume.affine[:3, :3])))
+
+    def extract(value: float) -> Extraction:
+        label = int(value)
+        vertices, triangles = _solid(surfaces, rank_of.get(label))
+        start = perf_counter()
+        normals = _kernels.triangle_normals(vertices, triangles) if options.normals else None
+        seconds = perf_counter() - start
+        surface = place_fresh(
+            vertices,
+            triangles,
+            normals,
+            volume.affine,
+            space=volume.space,
+            unit=volume.unit,
+            threads=options.threads,
+        )
+        voxels = count_of.get(label, 0)
+        facts = LabelFacts(
+            value=label, voxels=voxels, voxel_volume=voxels * voxel, neighbours=neighbours.get(label, ())
+        )
+        return Extraction(surface, Findings(label=facts), census.warnings, seconds_normals=seconds)
+
+    return extract
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Census:
+    """The labels of a volume in ascending order: their numbers, the samples' own, and how many samples have each."""
+
+    values: npt.NDArray[np.float64]
+    stored: npt.NDArray[np.float64]
+    counts: npt.NDArray[np.uint64]
+    warnings: tuple[str, ...]
+
+
+def take_census(volume: Volume) -> Census:
+    """Raises FieldError where the samples are no labels."""
+    found = _kernels.label_census(volume.samples.reshape(-1, order="F"), MOST_LABELS)
+    if found.too_many:
+        raise FieldError(f"holds more than {MOST_LABELS:,} values, so it is no label map; leave out --labels")
+    values = found.values * volume.slope + volume.intercept
+    whole = np.rint(values)
+    odd = found.not_whole or next(iter(values[np.abs(values - whole) > 1e-6].tolist()), None)
+    if odd is not None:
+        raise FieldError(f"holds {odd:.9g}, which is no label: labels are whole numbers; leave out --labels")
+    order = np.argsort(whole, kind="stable")
+    nan = found.not_a_number
+    warnings = (f"{nan:,} samples are NaN and count as background",) if nan else ()
+    return Census(whole[order], found.values[order], found.counts[order], warnings)
+
+
+def _ranks(values: npt.NDArray[np.float64], background: int) -> npt.NDArray[np.uint32]:
+    """Of each value: 0 for background, then by number."""
+    labels = values != background
+    ranks = np.zeros(len(values), np.uint32)
+    ranks[labels] = np.arange(1, int(labels.sum()) + 1)
+    return ranks
+
+
+def _solid(
+    surfaces: _kernels.LabelSurfaces, rank: int | None
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
+    """One label's vertices (v, 3), index space, and triangles (t, 3); none for a label that is not there."""
+    if rank is None:
+        return np.empty((0, 3), np.float32), np.empty((0, 3), np.int32)
+    solid = surfaces.solid(rank)
+    return solid.vertices, solid.triangles
+
+
+def _neighbours(
+    surfaces: _kernels.LabelSurfaces,
+    values: npt.NDArray[np.float64],
+    ranks: npt.NDArray[np.uint32],
+    background: int,
+) -> dict[int, tuple[int, ...]]:
+    """Of each label, those on the other side of its triangles, in ascending order."""
+    number = {int(rank): int(value) for value, rank in zip(values, ranks, strict=True)} | {0: background}
+    found: dict[int, list[int]] = {}
+    for one, other in surfaces.neighbours().tolist():
+        found.setdefault(number[one], []).append(number[other])
+        found.setdefault(number[other], []).append(number[one])
+    return {label: tuple(sorted(others)) for label, others in found.items()}
+
