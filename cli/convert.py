@@ -15,6 +15,7 @@ from isocore.choices import FORMATS, Choice, Format, distinct
 from isocore.requirements import REQUIREMENTS
 
 from .console import say
+from .convert_labels import label_request
 from .convert_options import ConvertOptions, convert_options
 from .groups import GroupedCommand
 from .lists import listed
@@ -73,6 +74,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
 
     from isocore.batches.plan import Naming, check_template, find_inputs, plan  # late: readers bring numpy
 
+    labels = label_request(options)
     pattern = _pattern(options, format_, requirements)
     check_template(options.name or "")
     _check_places(options)
@@ -83,7 +85,17 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     written += [(option, path) for option, path in more if path is not None]
     lists = [("--files-from", path) for path in (options.files_from,) if path not in (None, Path("-"))]
     inputs = find_inputs(names)
-    jobs = plan(inputs, choices, pattern, naming, volumes=options.reading.volume, written=written, read=lists)
+    lists += [("--names", path) for path in (options.label_table,) if path is not None]
+    jobs = plan(
+        inputs,
+        choices,
+        pattern,
+        naming,
+        volumes=options.reading.volume,
+        labels=labels,
+        written=written,
+        read=lists,
+    )
     if options.ambiguities and (len(jobs) != 1 or len(jobs[0].targets) != 1):
         raise click.UsageError(f"--ambiguities {options.ambiguities}: is one file; give one input and one isovalue")
     threads = options.threads or max(1, default_threads() // min(options.at_once, len(jobs)))
@@ -146,8 +158,10 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         block_size=int(asked.block_size) if asked.block_size else None,
         max_error=asked.max_error,
         topology=asked.topology,
+        smooth=asked.smooth or None,
+        background=asked.background,
     )
-    backend = None if asked.backend == "auto" else asked.backend
+    backend = "labels" if asked.labels is not None else None if asked.backend == "auto" else asked.backend
     if backend is not None:
         check_options(backend, options)
     return Job(

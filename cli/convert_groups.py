@@ -9,7 +9,7 @@ from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
-from .values import Isovalue, Jobs, MaxErrorType, Memory, Words
+from .values import Isovalue, Jobs, LabelList, MaxErrorType, Memory, Words
 
 _input, _isovalue, _method, _output, _batch, _report = map(option_of, GROUPS)
 
@@ -31,6 +31,30 @@ ISOVALUE = (
         show_default="auto",
         help="A number; otsu; pNN, the percentile NN; A:B:N, N values from A to B; A:B:+S, in steps of S; auto, the "
         "middle of a mask's two values, else otsu. Repeatable.",
+    ),
+)
+
+LABELS = (
+    _isovalue(
+        "--labels",
+        type=LabelList(),
+        metavar="all|LIST",
+        help="Of a label map: one surface for each label (all), or for some, as 1,5-9. Neighbours share their border.",
+    ),
+    _isovalue(
+        "--background",
+        type=int,
+        metavar="K",
+        show_default="0",
+        help="With --labels: the label that is none.",
+    ),
+    _isovalue(
+        "--names",
+        "label_table",
+        type=PATH,
+        metavar="FILE",
+        show_default="names inside the file",
+        help="With --labels: names and colours, as FreeSurfer, ITK-SNAP and Slicer write them, a .tsv (BIDS) or .csv.",
     ),
 )
 
@@ -64,6 +88,14 @@ METHOD = (
         show_default="faces",
         help="mc: two loops in a cell are two disks (faces), or a tube where the trilinear function says so.",
     ),
+    _method(
+        "--smooth",
+        type=click.IntRange(0, 1000),
+        metavar="N",
+        show_default="0",
+        help="Rounds of smoothing, 20 for a mask or labels: vertices slide along their grid edges, so that no sample "
+        "changes sides. Of volumes, by mc.",
+    ),
     _method("--cap/--no-cap", show_default=True, help="Close the surface at the volume's border."),
 )
 
@@ -87,8 +119,9 @@ OUTPUT = (
     _output(
         "--name",
         metavar="TEMPLATE",
-        show_default="{stem}, and _{isovalue} where there are several",
-        help="Of the output, without suffix; also {name} {parent} {relpath} {isovalue} {backend} {volume}.",
+        show_default="{stem}, with _{isovalue} where there are several, or _{label_name}",
+        help="Of the output, without suffix; also {name} {parent} {relpath} {isovalue} {label} {label_name} {backend} "
+        "{volume}.",
     ),
     _output(
         "--space",

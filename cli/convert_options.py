@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from isocore.choices import About, Choice, Format, MaxError
+from isocore.choices import About, Choice, Format, Labels, MaxError
 
-from .convert_groups import BATCH, INPUT, ISOVALUE, METHOD, OUTPUT, REPORT
+from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, METHOD, OUTPUT, REPORT
 from .options import Reading, default_threads, with_all
 
 if TYPE_CHECKING:
@@ -28,10 +28,14 @@ class ConvertOptions:
     null: bool
     reading: Reading
     isovalues: tuple[tuple[Choice, ...], ...]
+    labels: Labels | None
+    background: int | None
+    label_table: Path | None
     backend: str
     max_error: MaxError | None
     block_size: str | None
     topology: str | None
+    smooth: int | None
     cap: bool
     output: Path | None
     output_dir: Path | None
@@ -74,4 +78,4 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
     def with_record(context: click.Context, /, **values: Any) -> None:
         command(context, ConvertOptions(**values))
 
-    return with_all(with_record, (*INPUT, *ISOVALUE, *METHOD, *OUTPUT, *BATCH, *REPORT))
+    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *OUTPUT, *BATCH, *REPORT))

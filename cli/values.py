@@ -119,6 +119,17 @@ class Isovalue(_Worded):
         return choices.spread(str(value))
 
 
+class LabelList(_Worded):
+    """Which labels of a label map."""
+
+    name = "all|LIST"
+    words = ("all",)
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> choices.Labels:
+        """All, or numbers and ranges."""
+        return choices.parse_labels(str(value))
+
+
 class VolumeChoice(_Worded):
     """Which volume of a 4-D file."""
 

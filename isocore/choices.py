@@ -80,11 +80,16 @@ class Auto:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """One label of a label map; name, colour (red, green, blue, 0 to 255): where they are known."""
+    """One label of a label map.
+
+    name: what the file or a table calls it, or "". colour: red, green, blue, 0 to 255. file_name: the name as a part of
+    a file's, or `label_17`, and like no other of the same map.
+    """
 
     value: int
     name: str = ""
     colour: tuple[int, int, int] | None = None
+    file_name: str = ""
 
     def __str__(self) -> str:
         return f"label {self.value}"
@@ -142,7 +147,7 @@ class About:
 
 @dataclass(frozen=True, slots=True)
 class Labels:
-    """Which labels of a label map are asked for: their numbers, or None for all but the background; text: as written."""
+    """Which labels of a map are asked for: their numbers, or None for all but the background; text: as written."""
 
     values: tuple[int, ...] | None
     text: str

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from isocore.apart import Apart
-from isocore.choices import Auto, Choice, Number, Otsu, Percentile
+from isocore.choices import Auto, Choice, Label, Number, Otsu, Percentile
 from isocore.digits import exact, legible
 from isocore.errors import FieldError
 from isocore.histogram import Histogram
@@ -43,6 +43,8 @@ def choose(choice: Choice, histogram: Histogram) -> Chosen:
 def _chosen(choice: Choice, histogram: Histogram) -> Chosen:
     if isinstance(choice, Number):
         return Chosen(choice, choice.value, "given")
+    if isinstance(choice, Label):
+        return Chosen(choice, choice.value, "a label")
     ends = histogram.range
     if ends is None:
         return Chosen(choice, 0.5, "no sample is finite, so any isovalue is as good")

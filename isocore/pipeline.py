@@ -6,19 +6,21 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
-from isocore.backends import BACKENDS, Extract, Field, Outlook, default_backend, prepare
-from isocore.digits import exact, legible
+from isocore.backends import BACKENDS, LABELS, Extract, Field, Outlook, default_backend, prepare
+from isocore.choices import Choice, Label
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
+from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
-from isocore.histogram import Histogram, histogram
-from isocore.isovalue import choose, is_two_valued, middle
+from isocore.histogram import histogram
+from isocore.isovalue import choose
 from isocore.job import Job, Options, Target
-from isocore.measurements import Measurements, measure
+from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.offset import moved_field, moved_surface, offset_of
 from isocore.outputs import format_warnings, write_target
 from isocore.readers import read
+from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
 from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
 from isocore.requirements import missed
@@ -47,7 +49,7 @@ def convert(job: Job) -> Iterator[RunReport]:
         known = FieldFacts.of(source, spread)
         labels = label_count(source, spread)
         outlook = _outlook(job)
-        backend, why = (job.backend, "given") if job.backend else default_backend(type(source), outlook)
+        backend, why = _backend(job, source, outlook)
         with timer("prepare"):
             extract = prepare(source, backend, replace(job.options, normals=job.normals), outlook)
         reference = _ReferenceRuns(source, backend, job)
@@ -71,24 +73,24 @@ def convert(job: Job) -> Iterator[RunReport]:
                 run = RunReport(
                     asked=_asked(job, target),
                     status="done" if measured.triangles else "empty",
-                    message="" if measured.triangles else _emptiness(chosen.isovalue, spread),
+                    message="" if measured.triangles else emptiness(chosen, spread),
                     warnings=source.warnings
                     + known.warnings
                     + chosen.warnings
                     + isovalue_warnings(chosen.isovalue, spread, labels)
                     + found.warnings
                     + format_warnings(job)
-                    + _border(measured, known)
+                    + border(measured, known)
                     + losses,
                     written=written,
                     field=known,
-                    isovalue=chosen.isovalue,
+                    isovalue=None if isinstance(target.choice, Label) else chosen.isovalue,
                     chosen=chosen.why,
                     offset=offset,
                     backend=backend,
                     backend_chosen=why,
                     surface=measured,
-                    findings=found.findings,
+                    findings=_named(found.findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
@@ -162,25 +164,23 @@ def _outlook(job: Job) -> Outlook:
     return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
 
 
-def _emptiness(isovalue: float, spread: Histogram) -> str:
-    if spread.range is None:
-        return f"no surface at isovalue {exact(isovalue)}; no sample is finite"
-    low, high = spread.range
-    if low == high:
-        return f"no surface at isovalue {exact(isovalue)}; every sample is {exact(low)}"
-    value, low_text, high_text = legible(isovalue, low, high)
-    if is_two_valued(spread) and not spread.apart:
-        midway = exact(middle(low, high))
-        return f"no surface at isovalue {value}; the samples are {low_text} or {high_text}, so ask for -i {midway}"
-    return f"no surface at isovalue {value}; the samples lie between {low_text} and {high_text}"
+def _backend(job: Job, source: Field, outlook: Outlook) -> tuple[str, str]:
+    """The method, and why this one."""
+    if any(isinstance(target.choice, Label) for target in job.targets):
+        return LABELS.name, "labels are asked for"
+    if job.backend:
+        return job.backend, "given"
+    if job.options.smooth:
+        return REFERENCE, "its surface is what is smoothed"
+    return default_backend(type(source), outlook)
 
 
-def _border(measured: Measurements, known: FieldFacts) -> tuple[str, ...]:
-    """A warning where a volume's surface is open, which it is only at the volume's border."""
-    edges = measured.boundary_edges
-    if known.kind != "volume" or not edges:
-        return ()
-    return (f"the surface is open where it meets the volume's border ({edges:,} edges); --cap closes it",)
+def _named(findings: Findings, choice: Choice) -> Findings:
+    """What is said of a label, with the name and the colour that the label was chosen with."""
+    if findings.label is None or not isinstance(choice, Label):
+        return findings
+    color = None if choice.colour is None else "#" + bytes(choice.colour).hex()
+    return replace(findings, label=replace(findings.label, name=choice.name, color=color))
 
 
 def _write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | None) -> None:

@@ -20,7 +20,7 @@ NOUNS = {"errors", "version", "digits", "choices"} | {
     "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
-FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "segmentation"}
+FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "remarks", "segmentation"}
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
 #: What becomes of coordinates on their way to the file.
@@ -63,6 +63,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "methods": NOUNS | KERNELS | {"whole_file"},
     "backends": NOUNS | {"methods"},
     "benches": NOUNS | KERNELS | {"histogram", "methods"},
+    "remarks": NOUNS | {"field_facts", "histogram", "isovalue", "measurements"},
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
     "outputs": NOUNS | {"report/sections", "whole_file", "writers"},
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file"},
@@ -75,7 +76,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "batches/places": set(),
     "batches/inputs": BATCHED | {"readers", "batches/places"},
     "batches/naming": BATCHED | {"batches/inputs"},
-    "batches/plan": BATCHED | {"readers", "batches/inputs", "batches/naming", "batches/places"},
+    "batches/label_targets": BATCHED | {"readers", "methods/label_map"},
+    "batches/plan": BATCHED
+    | {"readers", "batches/inputs", "batches/label_targets", "batches/naming", "batches/places"},
     "batches/one_job": BATCHED | {"readers", "memory", "pipeline", "batches/stamps"},
     "batches/dry_run": BATCHED | {"batches/one_job", "batches/stamps"},
     "batches/worker": BATCHED | {"batches/frames", "batches/one_job"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from isocore.choices import Label, Labels
@@ -41,7 +41,7 @@ def label_choices(path: Path, request: LabelRequest, options: ReadOptions) -> tu
     for value in values:
         label = known.get(value)
         choices.append(Label(value, label.name if label else "", (label.colour if label else None) or palette(value)))
-    return tuple(choices) or (Label(request.background),)
+    return _with_file_names(choices or [Label(request.background)])
 
 
 def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int, ...]:
@@ -57,13 +57,14 @@ def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int,
     return tuple(int(value) for value in values if value != background)
 
 
-def safe_names(choices: Iterable[Label]) -> dict[Label, str]:
-    """Of each label, a name that is one for a file too. Labels that share one get their number behind it."""
-    plain = {choice: _UNSAFE.sub("_", choice.name).strip("._") or f"label_{choice.value}" for choice in choices}
-    alike = Counter(name.casefold() for name in plain.values())
-    return {
-        choice: f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name for choice, name in plain.items()
-    }
+def _with_file_names(choices: Iterable[Label]) -> tuple[Label, ...]:
+    """Each with a name that is one for a file too. Labels that share one get their number behind it."""
+    plain = [(choice, _UNSAFE.sub("_", choice.name).strip("._") or f"label_{choice.value}") for choice in choices]
+    alike = Counter(name.casefold() for _, name in plain)
+    return tuple(
+        replace(choice, file_name=f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name)
+        for choice, name in plain
+    )
 
 
 def palette(value: int) -> tuple[int, int, int]:

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from isocore.batches.inputs import Input
-from isocore.choices import Choice
+from isocore.choices import Choice, Label
 from isocore.errors import OptionError
 from isocore.job import Job
 
-NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume")
+NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume", "label", "label_name")
 #: How a volume's number may be written: in so many digits.
 _DIGITS = re.compile(r"0?\d{1,2}d?|")
 
@@ -54,13 +54,15 @@ def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, seve
     """Where one surface goes. several: an input has more than one isovalue."""
     if naming.output is not None:
         return naming.output
-    template = naming.template or default_template(several=several, volumes=pattern.read_options.volume is not None)
+    volumes, labels = pattern.read_options.volume is not None, isinstance(choice, Label)
+    template = naming.template or default_template(several=several, volumes=volumes, labels=labels)
     return folder_of(item, naming, template) / f"{_filled(template, item, choice, pattern)}.{pattern.format}"
 
 
-def default_template(*, several: bool, volumes: bool) -> str:
+def default_template(*, several: bool, volumes: bool, labels: bool = False) -> str:
     """The name where none is asked for."""
-    return "{stem}" + "_v{volume}" * volumes + "_{isovalue}" * several
+    which = "_{label_name}" if labels else "_{isovalue}" * several
+    return "{stem}" + "_v{volume}" * volumes + which
 
 
 def folder_of(item: Input, naming: Naming, template: str = "") -> Path:
@@ -79,7 +81,9 @@ def _filled(template: str, item: Input, choice: Choice, pattern: Job) -> str:
     return template.format(
         stem=item.stem,
         name=item.path.name,
-        isovalue=str(choice),
+        isovalue=choice.value if isinstance(choice, Label) else str(choice),
+        label=choice.value if isinstance(choice, Label) else "",
+        label_name=choice.file_name if isinstance(choice, Label) else "",
         relpath=(item.below_common / item.stem).as_posix(),
         parent=item.parent,
         backend=pattern.backend or "auto",

@@ -11,12 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from isocore.batches.inputs import Input, find_inputs
+from isocore.batches.label_targets import LabelRequest, label_choices
 from isocore.batches.naming import Naming, check_template, default_template, folder_of, other_templates, output_of
 from isocore.batches.places import Places
-from isocore.choices import Choice
+from isocore.choices import Auto, Choice
 from isocore.errors import IsocoreError, OptionError
 from isocore.job import STDOUT, Job, Target
-from isocore.readers import count_volumes, files_of
+from isocore.readers import ReadOptions, count_volumes, files_of
 
 #: An option that names a file, and the file.
 Named = tuple[str, Path]
@@ -33,10 +34,11 @@ def plan(
     naming: Naming,
     *,
     volumes: int | str | None = None,
+    labels: LabelRequest | None = None,
     written: Sequence[Named] = (),
     read: Sequence[Named] = (),
 ) -> list[Job]:
-    """One job per input, with the settings of `pattern` and a target per choice.
+    """One job per input, with the settings of `pattern` and a target per choice, or per label of each input.
 
     volumes: "all" makes one job per volume, for which the header is read; a file whose header cannot be read
     stays one job, which will say why.
@@ -45,18 +47,20 @@ def plan(
     Raises OptionError where an output or a file of `written` would overwrite an input, a file that belongs to one,
     or each other; where names alone are the trouble the message says which would do.
     """
+    asked = _Asked(choices, labels)
     if naming.output is not None and (len(inputs) != 1 or len(choices) != 1):
         raise OptionError(
             f"-o {naming.output}: takes one input and one isovalue, not {len(inputs)} and {len(choices)}; use -d"
         )
     patterns = [(item, one) for item in inputs for one in _per_volume(item, pattern, volumes)]
-    jobs = [_job(item, choices, one, naming) for item, one in patterns]
+    jobs = [_job(item, asked, one, naming) for item, one in patterns]
     try:
         refuse_overwriting(jobs, written=written, read=read)
     except _Clash as clash:
         several, each = len(choices) > 1, any(one.read_options.volume is not None for _, one in patterns)
-        for template in other_templates(naming.template or default_template(several=several, volumes=each)):
-            other = [_job(item, choices, one, replace(naming, template=template)) for item, one in patterns]
+        default = default_template(several=several, volumes=each, labels=labels is not None)
+        for template in other_templates(naming.template or default):
+            other = [_job(item, asked, one, replace(naming, template=template)) for item, one in patterns]
             if _is_free(other, written, read):
                 raise OptionError(f"{clash}; tell them apart with --name {template}") from clash
         raise OptionError(f"{clash}; convert them one by one, each with another -d") from clash
@@ -75,10 +79,28 @@ def _per_volume(item: Input, pattern: Job, volumes: int | str | None) -> list[Jo
     return [replace(pattern, read_options=replace(pattern.read_options, volume=k)) for k in range(count)]
 
 
-def _job(item: Input, choices: tuple[Choice, ...], pattern: Job, naming: Naming) -> Job:
+class _Asked:
+    """What is asked of each input: the same isovalues of all, or the labels that each one has."""
+
+    def __init__(self, choices: tuple[Choice, ...], labels: LabelRequest | None) -> None:
+        self._choices, self._labels = choices, labels
+        self._known: dict[tuple[Path, int | None], tuple[Choice, ...]] = {}
+
+    def of(self, path: Path, options: ReadOptions) -> tuple[Choice, ...]:
+        """The choices for one input; a label map is looked into once."""
+        if self._labels is None:
+            return self._choices
+        key = path, options.volume
+        if key not in self._known:
+            self._known[key] = label_choices(path, self._labels, options)
+        return self._known[key]
+
+
+def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
     if item.refusal:  # one row, whatever is asked of each file in the folder
         place = naming.output or folder_of(item, naming) / item.path.name
-        return replace(pattern, source=item.path, targets=(Target(choices[0], place),), refusal=item.refusal)
+        return replace(pattern, source=item.path, targets=(Target(Auto(), place),), refusal=item.refusal)
+    choices = asked.of(item.path, pattern.read_options)
     several = len(choices) > 1
     targets = tuple(
         Target(choice, output_of(item, choice, pattern, naming, several=several)) for choice in choices

@@ -28,6 +28,8 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
     if options.topology not in (None, *TOPOLOGIES):
         raise OptionError(f"--topology {options.topology}: must be {' or '.join(TOPOLOGIES)}")
     if isinstance(field, CellMesh):
+        if options.smooth:
+            raise OptionError("--smooth: is for volumes; leave it out for meshes")
         if trilinear:
             raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
         return prepare_marching_cells(field, options)
@@ -38,6 +40,8 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
         marched = _kernels.marching_cubes(
             volume.samples, stored, volume.inside_is_below, options.cap, options.threads, trilinear
         )
+        if options.smooth:
+            _kernels.smooth_isosurface(marched.vertices, marched.triangles, options.smooth, options.threads)
         surface, seconds = placed_surface(volume, marched.vertices, marched.triangles, options)
         tubes = marched.tubes if trilinear else None
         ambiguous = Ambiguous(faces=marched.ambiguous_faces, cells=marched.ambiguous_cells, tubes=tubes)

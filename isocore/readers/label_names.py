@@ -46,7 +46,8 @@ def _of_tables(texts: list[bytes]) -> dict[int, LabelName]:
         for label in root.iter("Label"):
             key, name = label.get("Key", ""), " ".join((label.text or "").split())
             if re.fullmatch(r"-?\d{1,15}", key) and name:
-                found[int(key)] = LabelName(name, _fractions([label.get(part, "") for part in ("Red", "Green", "Blue")]))
+                colour = _fractions([label.get(part, "") for part in ("Red", "Green", "Blue")])
+                found[int(key)] = LabelName(name, colour)
     return found
 
 

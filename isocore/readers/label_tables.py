@@ -59,7 +59,7 @@ def _columns(lines: list[str]) -> dict[int, LabelName]:
     number = next((heading.index(name) for name in _NUMBERS if name in heading), None)
     if number is None:
         names = (_plain_row(row) for row in rows)
-        return {value: label for value, label in filter(None, names)}
+        return dict(filter(None, names))
     name = next((at for each in _NAMES for at, cell in enumerate(heading) if cell == each and at != number), None)
     if name is None:
         return {}

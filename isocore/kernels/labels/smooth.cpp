@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -70,15 +71,56 @@ float kept(float from, float to) {
 
 using Places = std::vector<Lanes>;
 
+// A mesh without its places.
+struct Shape {
+    std::span<const Element> elements;
+    std::span<const std::int32_t> triangles;
+    bool may_be_open;
+};
+
+// Of an open ring of neighbours its last, which no triangle names first; of a closed one kNone. For every vertex.
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+std::vector<std::uint32_t> find_ends(const Shape& shape) {
+    if (!shape.may_be_open) return std::vector<std::uint32_t>(shape.elements.size(), kNone);
+    // Around an open ring, sums of what comes first and of what comes last differ by its two ends.
+    std::vector<std::int64_t> difference(shape.elements.size(), 0);
+    const auto for_each_corner = [&](const auto& visit) {
+        for (std::size_t t = 0; t < shape.triangles.size(); t += 3) {
+            for (std::size_t n = 0; n < 3; ++n) {
+                visit(static_cast<std::size_t>(shape.triangles[t + n]), shape.triangles[t + (n + 1) % 3],
+                      shape.triangles[t + (n + 2) % 3]);
+            }
+        }
+    };
+    for_each_corner(
+        [&](std::size_t v, std::int32_t next, std::int32_t last) { difference[v] += next - std::int64_t{last}; });
+    // What is left of `last` after all that come first are taken away is the end: by exclusive or, in any order.
+    std::vector<std::uint32_t> ends(shape.elements.size(), kNone);
+    std::vector<std::uint32_t> mixed(shape.elements.size(), 0);
+    for_each_corner([&](std::size_t v, std::int32_t next, std::int32_t last) {
+        mixed[v] ^= static_cast<std::uint32_t>(next) ^ static_cast<std::uint32_t>(last);
+    });
+    // mixed is first ^ end, and difference is first - end: the corner that satisfies both is the end.
+    for_each_corner([&](std::size_t v, std::int32_t, std::int32_t last) {
+        if (difference[v] == 0) return;
+        const auto end = static_cast<std::uint32_t>(last), first = mixed[v] ^ end;
+        if (std::int64_t{first} - end == difference[v]) ends[v] = end;
+    });
+    return ends;
+}
+
 // The vertices of grid edges, which slide along them, with their rings of neighbours. They are sorted by the size of
 // their ring, block by block, so that loops over a ring have one length many times over.
 class EdgeVertices {
   public:
-    explicit EdgeVertices(const LabelMesh& mesh) {
-        std::vector<std::uint8_t> sizes(mesh.elements.size(), 0);
-        for (const std::int32_t corner : mesh.triangles) ++sizes[static_cast<std::size_t>(corner)];
-        order(mesh, sizes);
-        fill(mesh);
+    explicit EdgeVertices(const Shape& shape) {
+        const std::vector<std::uint32_t> ends = find_ends(shape);
+        std::vector<std::uint8_t> sizes(shape.elements.size(), 0);
+        for (const std::int32_t corner : shape.triangles) ++sizes[static_cast<std::size_t>(corner)];
+        for (std::size_t v = 0; v < ends.size(); ++v)
+            sizes[v] = static_cast<std::uint8_t>(sizes[v] + (ends[v] != kNone));
+        order(shape, sizes);
+        fill(shape, ends);
     }
 
     // Moves all by one step, from their places in `from` to those in `to`.
@@ -119,7 +161,7 @@ class EdgeVertices {
         std::size_t begin, end, first, ring;
     };
 
-    void order(const LabelMesh& mesh, const std::vector<std::uint8_t>& sizes) {
+    void order(const Shape& mesh, const std::vector<std::uint8_t>& sizes) {
         std::size_t first = 0;
         std::array<std::vector<std::uint32_t>, 256> of_size;
         for (std::size_t begin = 0; begin < sizes.size(); begin += kBlock) {
@@ -144,7 +186,7 @@ class EdgeVertices {
     }
 
     // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
-    void fill(const LabelMesh& mesh) {
+    void fill(const Shape& mesh, const std::vector<std::uint32_t>& ends) {
         std::vector<std::uint32_t> place(mesh.elements.size(), kNone);
         for (const Run& run : runs_) {
             for (std::size_t n = run.begin; n < run.end; ++n) {
@@ -158,6 +200,9 @@ class EdgeVertices {
                 ring_[at] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 1) % 3]);
                 behind_[at++] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 2) % 3]);
             }
+        }
+        for (const std::uint32_t v : vertex_) {
+            if (ends[v] != kNone) ring_[place[v]] = behind_[place[v]] = ends[v];
         }
     }
 
@@ -191,7 +236,6 @@ class EdgeVertices {
         }
     }
 
-    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
     std::vector<std::uint32_t> vertex_;
     std::vector<std::uint8_t> axis_;
     std::vector<Run> runs_;
@@ -257,24 +301,63 @@ class CurveVertices {
 
 }  // namespace
 
-void smooth(LabelMesh& mesh, int rounds, int threads) {
-    if (rounds <= 0) return;
-    Places from(mesh.elements.size());
-    for (std::size_t n = 0; n < from.size(); ++n) {
-        for (std::size_t axis = 0; axis < 3; ++axis) from[n][axis] = mesh.vertices[3 * n + axis];
+namespace {
+
+template <class Coordinate>
+Places places_of(const Coordinate* vertices, std::size_t count) {
+    Places places(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) places[n][axis] = static_cast<float>(vertices[3 * n + axis]);
     }
+    return places;
+}
+
+// Only what has moved is written back: other coordinates keep all their digits.
+template <class Coordinate>
+void write_back(const Places& places, std::span<const Element> elements, Coordinate* vertices) {
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (elements[n] >> axis & 1) vertices[3 * n + axis] = static_cast<Coordinate>(places[n][axis]);
+        }
+    }
+}
+
+// Moves `from` by so many rounds.
+void run(const Shape& shape, const CurveVertices& curves, int rounds, int threads, Places& from) {
     Places to = from;
-    EdgeVertices edges(mesh);
-    const CurveVertices curves(mesh);
+    EdgeVertices edges(shape);
     for (int step = 0; step < rounds; ++step) {
         const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
         edges.step(from, to, factor, step == 0 || step % kSamePace == kSamePace / 2, threads);
         curves.step(from, to, factor, threads);
         std::swap(from, to);
     }
-    for (std::size_t n = 0; n < from.size(); ++n) {
-        for (std::size_t axis = 0; axis < 3; ++axis) mesh.vertices[3 * n + axis] = from[n][axis];
-    }
 }
+
+}  // namespace
+
+void smooth(LabelMesh& mesh, int rounds, int threads) {
+    if (rounds <= 0) return;
+    Places places = places_of(mesh.vertices.data(), mesh.elements.size());
+    run({mesh.elements, mesh.triangles, false}, CurveVertices(mesh), rounds, threads, places);
+    write_back(places, mesh.elements, mesh.vertices.data());
+}
+
+template <class Coordinate>
+void smooth(Coordinate* vertices, std::size_t vertex_count, const std::int32_t* triangles, std::size_t triangle_count,
+            int rounds, int threads) {
+    if (rounds <= 0) return;
+    std::vector<Element> elements(vertex_count, 0);
+    for (std::size_t n = 0; n < 3 * vertex_count; ++n) {
+        const bool inside = vertices[n] != std::floor(vertices[n]);
+        elements[n / 3] = static_cast<Element>(elements[n / 3] | (inside ? 1u << n % 3 : 0u));
+    }
+    Places places = places_of(vertices, vertex_count);
+    run({elements, {triangles, 3 * triangle_count}, true}, CurveVertices({}), rounds, threads, places);
+    write_back(places, elements, vertices);
+}
+
+template void smooth(float*, std::size_t, const std::int32_t*, std::size_t, int, int);
+template void smooth(double*, std::size_t, const std::int32_t*, std::size_t, int, int);
 
 }  // namespace isocore::labels

@@ -14,6 +14,7 @@
 #include "python/bindings.hpp"
 #include "python/named_tuple.hpp"
 #include "samples/sample_types.hpp"
+#include "surface/mesh_view.hpp"
 
 namespace isocore::python {
 namespace {
@@ -64,6 +65,20 @@ class LabelSurfaces {
     std::mutex one_at_a_time_;
 };
 
+template <class Real>
+void bind_smooth(nb::module_& module) {
+    using nb::arg;
+    module.def(
+        "smooth_isosurface",
+        [](const nb::ndarray<Real, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>& vertices,
+           const Rows<std::int32_t, 3>& triangles, int rounds, int threads) {
+            const nb::gil_scoped_release unlocked;
+            check_indices(triangles.data(), triangles.shape(0), vertices.shape(0));
+            labels::smooth(vertices.data(), vertices.shape(0), triangles.data(), triangles.shape(0), rounds, threads);
+        },
+        arg("vertices").noconvert(), arg("triangles").noconvert(), arg("rounds"), arg("threads") = 1);
+}
+
 template <class Sample>
 void bind_sample(nb::module_& module, const NamedTuple& label_census) {
     using nb::arg;
@@ -109,6 +124,8 @@ void bind_labels(nb::module_& module) {
         .def(
             "solid", [=](LabelSurfaces& all, std::size_t rank) { return all.solid(rank, label_solid); }, arg("rank"))
         .def("shared", [=](const LabelSurfaces& all) { return all.shared(label_mesh); });
+    bind_smooth<float>(module);
+    bind_smooth<double>(module);
     for_each_sample_type([&]<class Sample>() { bind_sample<Sample>(module, label_census); });
 }
 

@@ -1,0 +1,34 @@
+"""What a run has to say about its surface, in words: why it is empty, where it is open."""
+
+from __future__ import annotations
+
+from isocore.choices import Label
+from isocore.digits import exact, legible
+from isocore.field_facts import FieldFacts
+from isocore.histogram import Histogram
+from isocore.isovalue import Chosen, is_two_valued, middle
+from isocore.measurements import Measurements
+
+
+def emptiness(chosen: Chosen, spread: Histogram) -> str:
+    """Why there is no surface."""
+    if isinstance(chosen.asked, Label):
+        return f"no sample is {chosen.asked}"
+    if spread.range is None:
+        return f"no surface at isovalue {exact(chosen.isovalue)}; no sample is finite"
+    low, high = spread.range
+    if low == high:
+        return f"no surface at isovalue {exact(chosen.isovalue)}; every sample is {exact(low)}"
+    value, low_text, high_text = legible(chosen.isovalue, low, high)
+    if is_two_valued(spread) and not spread.apart:
+        midway = exact(middle(low, high))
+        return f"no surface at isovalue {value}; the samples are {low_text} or {high_text}, so ask for -i {midway}"
+    return f"no surface at isovalue {value}; the samples lie between {low_text} and {high_text}"
+
+
+def border(measured: Measurements, known: FieldFacts) -> tuple[str, ...]:
+    """A warning where a volume's surface is open, which it is only at the volume's border."""
+    edges = measured.boundary_edges
+    if known.kind != "volume" or not edges:
+        return ()
+    return (f"the surface is open where it meets the volume's border ({edges:,} edges); --cap closes it",)
