@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from isocore.choices import About, Choice, Format, Labels, MaxError
+from isocore.choices import About, Choice, Format, MaxError
+from isocore.labels import Labels
 
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, METHOD, OUTPUT, REPORT
 from .options import Reading, default_threads, with_all

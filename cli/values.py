@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from isocore import choices
+from isocore import choices, labels
 from isocore.errors import OptionError
 
 
@@ -125,9 +125,9 @@ class LabelList(_Worded):
     name = "all|LIST"
     words = ("all",)
 
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> choices.Labels:
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> labels.Labels:
         """All, or numbers and ranges."""
-        return choices.parse_labels(str(value))
+        return labels.parse_labels(str(value))
 
 
 class VolumeChoice(_Worded):

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from isocore.apart import Apart
-from isocore.choices import Auto, Choice, Label, Number, Otsu, Percentile
+from isocore.choices import Auto, Choice, Number, Otsu, Percentile
 from isocore.digits import exact, legible
 from isocore.errors import FieldError
 from isocore.histogram import Histogram
+from isocore.labels import Label
 
 #: From this share of the samples on, values that were set aside for Otsu's threshold are named beside a percentile.
 _SHARE_THAT_MOVES = 1e-3

@@ -7,13 +7,14 @@ from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, LABELS, Extract, Field, Outlook, default_backend, prepare
-from isocore.choices import Choice, Label
+from isocore.choices import Choice
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
 from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
 from isocore.job import Job, Options, Target
+from isocore.labels import Label
 from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
@@ -77,7 +78,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     warnings=source.warnings
                     + known.warnings
                     + chosen.warnings
-                    + isovalue_warnings(chosen.isovalue, spread, labels)
+                    + isovalue_warnings(chosen, spread, labels)
                     + found.warnings
                     + format_warnings(job)
                     + border(measured, known)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from isocore.choices import Label
 from isocore.digits import exact, legible
 from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram
 from isocore.isovalue import Chosen, is_two_valued, middle
+from isocore.labels import Label
 from isocore.measurements import Measurements
 
 

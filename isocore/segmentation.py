@@ -12,7 +12,8 @@ import numpy.typing as npt
 from isocore.digits import exact, legible
 from isocore.extraction import Field
 from isocore.histogram import Histogram
-from isocore.isovalue import is_two_valued, middle
+from isocore.isovalue import Chosen, is_two_valued, middle
+from isocore.labels import Label
 from isocore.volume import Volume
 
 #: A mask's isovalue nearer to one of its values than this share of the way is hardly meant.
@@ -79,11 +80,14 @@ def _neighbours(rows: npt.NDArray[np.generic], axis: int, background: float) -> 
     return pairs, 1 - differing / pairs, float(np.mean(steps > 1)) if differing else 1.0
 
 
-def isovalue_warnings(isovalue: float, spread: Histogram, labels: int) -> tuple[str, ...]:
-    """What an isovalue makes of a mask or of a label map, and what to ask for instead.
+def isovalue_warnings(chosen: Chosen, spread: Histogram, labels: int) -> tuple[str, ...]:
+    """What an isovalue makes of a mask or of a label map, and what to ask for instead; nothing where labels are.
 
     labels: what label_count says of the field.
     """
+    isovalue = chosen.isovalue
+    if isinstance(chosen.asked, Label):
+        return ()
     if labels:
         return (_of_labels(isovalue, labels),)
     ends = spread.kept_range
@@ -106,5 +110,5 @@ def _of_labels(isovalue: float, labels: int) -> str:
     return (
         f"the samples look like labels ({labels:,} values, constant over regions): isovalue {exact(isovalue)} makes "
         "one body of all labels from there on, without borders between them, and their numbers move its surface; "
-        "make a mask of each label that is wanted, for -i 0.5"
+        "--labels all makes a surface of each label"
     )

@@ -16,7 +16,7 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "digits", "choices"} | {
+NOUNS = {"errors", "version", "digits", "choices", "labels"} | {
     "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
@@ -35,7 +35,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "version": set(),
     "digits": set(),
-    "choices": {"digits", "errors"},
+    "choices": {"digits", "errors", "labels"},
+    "labels": {"errors"},
     "whole_file": {"errors"},
     "volume": {"digits", "errors"},
     "cell_mesh": {"errors"},
@@ -50,8 +51,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "readers/options": set(),
     "apart": KERNELS,
     "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,
-    "isovalue": {"apart", "choices", "digits", "errors", "histogram"} | KERNELS,
-    "segmentation": {"digits", "extraction", "histogram", "isovalue", "volume"},
+    "isovalue": {"apart", "choices", "labels", "digits", "errors", "histogram"} | KERNELS,
+    "segmentation": {"labels", "digits", "extraction", "histogram", "isovalue", "volume"},
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,

@@ -13,7 +13,9 @@ from isocore.cli.convert import convert
 from isocore.cli.info import info
 from small_files import ball, write_nifti
 
+from isocore.choices import Number
 from isocore.histogram import histogram
+from isocore.isovalue import Chosen
 from isocore.readers import read
 from isocore.segmentation import isovalue_warnings, label_count
 from isocore.volume import Volume
@@ -108,7 +110,8 @@ def test_a_label_map_under_one_isovalue_is_warned_of(tmp_path: Path) -> None:
 def test_the_end_of_a_mask_is_warned_of(low: int, high: int, isovalue: float, says: str) -> None:
     """Not beyond the ends, where there is no surface at all."""
     mask = np.where(ball() > 50, high, low).astype(np.int16)
-    found = isovalue_warnings(isovalue, histogram(Volume(np.asfortranarray(mask))), 0)
+    chosen = Chosen(Number(isovalue, str(isovalue)), isovalue, "given")
+    found = isovalue_warnings(chosen, histogram(Volume(np.asfortranarray(mask))), 0)
     assert says in found[0] if says else found == ()
 
 

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from isocore.choices import Label, Labels
 from isocore.errors import IsocoreError
+from isocore.labels import Label, Labels
 from isocore.readers import read, suffix_of
 from isocore.readers.label_names import names_inside
 from isocore.readers.label_tables import LabelName

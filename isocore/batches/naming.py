@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from isocore.batches.inputs import Input
-from isocore.choices import Choice, Label
+from isocore.choices import Choice
 from isocore.errors import OptionError
 from isocore.job import Job
+from isocore.labels import Label
 
 NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume", "label", "label_name")
 #: How a volume's number may be written: in so many digits.

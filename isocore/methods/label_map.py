@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
-from isocore.choices import MOST_LABELS
 from isocore.errors import FieldError
 from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts, Outlook
 from isocore.job import Options
+from isocore.labels import MOST_LABELS
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
