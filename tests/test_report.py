@@ -143,9 +143,10 @@ def test_junit_spells_odd_characters_as_ever() -> None:
 
 def test_markdown_puts_failures_first_and_escapes_names(batch: BatchReport) -> None:
     """A pipe in a file name adds no column."""
-    text = renderer_for(Path("x.md"))(batch)
+    text = renderer_for(Path("x.md"))(replace(batch, outputs=(*batch.outputs, run_of(output="o/\x1b[31m\u202e.ply"))))
+    assert "\x1b" not in text and "\u202e" not in text and r"\\x1b\[31m" in text
     table = [line for line in text.splitlines() if line.startswith("|")]
-    assert len({len(re.findall(r"(?<!\\)\|", line)) for line in table}) == 1 and len(table) == 7
+    assert len({len(re.findall(r"(?<!\\)\|", line)) for line in table}) == 1 and len(table) == 8
     assert text.index("**failed**") < text.index("| file")
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
+from isocore.errors import printable
 from isocore.report.record import BatchReport
 from isocore.report.summary import HEADINGS, RIGHT, summary_rows, totals_line
-from isocore.report.texts import shown
 
 
 def render_markdown(batch: BatchReport) -> str:
@@ -26,7 +26,7 @@ def render_markdown(batch: BatchReport) -> str:
 
 
 def _text(text: str) -> str:
-    text = shown(text)
+    text = printable(re.sub(r"[\r\n\x0b\x0c\x85\u2028\u2029]", " ", text))
     for character in "\\|*_`<>[]":
         text = text.replace(character, "\\" + character)
-    return re.sub(r"[\r\n\x0b\x0c\x85\u2028\u2029]", " ", text)
+    return text
