@@ -104,6 +104,17 @@ def test_a_hot_voxel_decides_no_isovalue(outlier: float) -> None:
     assert chosen.warnings[0].startswith(f"1 sample is {outlier:g} (0.024 % of all)")
 
 
+@pytest.mark.parametrize(
+    ("middle", "width", "outlier"), [(300.0, 0.01, 5000.0), (0.0, 1e-9, 1.0), (-101_325.0, 0.5, 0.0)]
+)
+def test_a_handful_is_far_out_by_the_width_of_the_others(middle: float, width: float, outlier: float) -> None:
+    """Whatever the size of the numbers: a thousand times as far as all others are spread."""
+    samples = np.random.default_rng(0).uniform(middle - width, middle + width, 4096)
+    samples[[7, 700]] = outlier
+    chosen = choose(Otsu(), spread_of(samples))
+    assert abs(chosen.isovalue - middle) < width and "2 samples are" in chosen.warnings[0]
+
+
 def test_hot_voxels_of_many_values_are_set_aside_together() -> None:
     """Half a per cent of them, each with a value of its own."""
     samples = scan("float32")

@@ -75,6 +75,31 @@ def test_a_percentile_is_numpys(values: npt.NDArray[np.generic], percent: float,
         assert scaled.min() <= found <= scaled.max()
 
 
+def test_a_percentile_is_rounded_as_numpys() -> None:
+    """Interpolated from the nearer of two samples."""
+    values = np.random.default_rng(5).normal(size=1000)
+    spread = histogram(volume(values))
+    for percent in np.random.default_rng(6).uniform(0, 100, 300).tolist():
+        assert percentile(spread, percent) == np.percentile(values, percent)
+
+
+@given(
+    st.sampled_from(TYPES).flatmap(spread_samples),
+    st.sampled_from([(1.0, 0.0), (2.008, -7.5), (-0.25, 3.0), (1e-3, 0.0), (-1e6, 1e9)]),
+)
+def test_a_chosen_isovalue_divides_the_samples(values: npt.NDArray[np.generic], scale: tuple[float, float]) -> None:
+    """Whatever they are, some of those that were not set aside lie below it and some do not."""
+    source = volume(values, slope=scale[0], intercept=scale[1])
+    spread = histogram(source, threads=2)
+    assume(spread.low < spread.high)
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = scale[0] * source.samples.astype(np.float64) + scale[1]
+    assume(np.isfinite(scaled).all() and len(np.unique(scaled)) == len(np.unique(source.samples)))
+    low, high = spread.kept_range or (0.0, 0.0)
+    assert low < choose(Auto(), spread).isovalue <= high and low < choose(Otsu(), spread).isovalue <= high
+    assert int(spread.counts.sum()) + sum(group.count for group in spread.apart) == spread.finite
+
+
 @pytest.mark.parametrize("outlier", [1e6, 1e10, -1e20, 1e30, float(np.finfo(np.float32).max)])
 def test_one_outlier_moves_no_percentile(outlier: float) -> None:
     """One wild voxel in 4,096: the 90th percentile is what numpy says of all samples."""

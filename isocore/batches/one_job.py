@@ -16,7 +16,8 @@ from isocore.report.record import RunReport
 
 def estimate(job: Job) -> int:
     """Bytes that a job may take at its peak."""
-    return estimated_bytes(content_bytes(job.source))
+    copied = 2 if job.read_options.ignore else 1  # 8 bits become the 32 of a type that has NaN
+    return estimated_bytes(copied * content_bytes(job.source))
 
 
 def guarded(job: Job) -> Iterator[RunReport]:

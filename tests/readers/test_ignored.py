@@ -93,6 +93,8 @@ def test_a_value_is_rounded_as_float32_samples_are() -> None:
 def test_a_value_that_no_sample_has_is_told() -> None:
     """And the samples stay what they are, in their type."""
     samples = np.asfortranarray(np.arange(8, dtype=np.uint8).reshape(2, 2, 2))
+    infinite = np.asfortranarray(np.full((2, 2, 2), np.inf, np.float32))
+    assert without_ignored(Volume(infinite), [1e300]).ignored == 0
     for value in (99, 0.5, 1e300, -1):
         volume = without_ignored(Volume(samples), [value])
         assert volume.samples is samples and "which --ignore names" in volume.warnings[0]
