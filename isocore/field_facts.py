@@ -18,7 +18,7 @@ class FieldFacts:
     shape: of a volume the samples along i, j, k; of a mesh the points and the cells that are contoured.
     spacing: length of one step along i, j, k, in `unit`; None for a mesh.
     space: what world means, as in Volume.
-    field: the mesh's field that was read; None for a volume.
+    field: that was read, in a file that names its fields; else None.
     connectivity: of a mesh, how its cells came to hang together.
     range: smallest and largest finite value, scaled; None without one.
     nonfinite: samples that have none. ignored: samples that were named as meaning nothing; they count as outside too.
@@ -55,7 +55,7 @@ class FieldFacts:
                 spacing=source.spacing,
                 space=source.space,
                 unit=source.unit,
-                field=None,
+                field=source.field_name or None,
                 range=spread.range,
                 nonfinite=spread.nonfinite - source.ignored,
                 ignored=source.ignored,

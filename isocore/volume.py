@@ -43,6 +43,7 @@ class Volume:
     unit: of the world, "mm", or "" where the file does not say.
     warnings: what the reader wants its user to know.
     ignored: how many samples are NaN because they were named as such.
+    field_name: of the samples, in a file that names its fields.
     """
 
     samples: npt.NDArray[Any]
@@ -53,6 +54,7 @@ class Volume:
     unit: str = ""
     warnings: tuple[str, ...] = ()
     ignored: int = 0
+    field_name: str = ""
 
     def __post_init__(self) -> None:
         samples = self.samples

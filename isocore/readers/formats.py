@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from isocore.cell_mesh import CellMesh
 from isocore.readers.nifti import count_nifti, nifti_files, read_nifti
@@ -54,34 +55,13 @@ class Format:
     unsearched: tuple[str, ...] = ()
 
 
-def _read_vtu(path: Path, options: ReadOptions) -> CellMesh:
-    from isocore.readers.vtu import read_vtu  # volumes are read without it
+def _late(module: str, function: str) -> Callable[..., Any]:
+    """A function of a reader that is imported when it is first called: most files need few of the readers."""
 
-    return read_vtu(path, options)
+    def call(*arguments: Any) -> Any:
+        return getattr(import_module(f"isocore.readers.{module}"), function)(*arguments)
 
-
-def _vtu_fields(path: Path) -> tuple[FieldInfo, ...]:
-    from isocore.readers.vtu import vtu_fields
-
-    return vtu_fields(path)
-
-
-def _read_pvtu(path: Path, options: ReadOptions) -> CellMesh:
-    from isocore.readers.pvtu import read_pvtu
-
-    return read_pvtu(path, options)
-
-
-def _pvtu_files(path: Path) -> tuple[Path, ...]:
-    from isocore.readers.pvtu import pvtu_files
-
-    return pvtu_files(path)
-
-
-def _pvtu_fields(path: Path) -> tuple[FieldInfo, ...]:
-    from isocore.readers.pvtu import pvtu_fields
-
-    return pvtu_fields(path)
+    return call
 
 
 FORMATS = (
@@ -94,8 +74,22 @@ FORMATS = (
     ),
     Format(suffixes=(".nrrd", ".nhdr"), read=read_nrrd, count=count_nrrd, files=nrrd_files),
     Format(suffixes=(".raw", ".raw.gz"), read=read_raw, count=count_raw, files=raw_files),
-    Format(suffixes=(".vtu",), read=_read_vtu, fields=_vtu_fields),
-    Format(suffixes=(".pvtu",), read=_read_pvtu, files=_pvtu_files, fields=_pvtu_fields, lists=True),
+    Format(suffixes=(".vtu",), read=_late("vtu", "read_vtu"), fields=_late("vtu", "vtu_fields")),
+    Format(
+        suffixes=(".pvtu",),
+        read=_late("pvtu", "read_pvtu"),
+        files=_late("pvtu", "pvtu_files"),
+        fields=_late("pvtu", "pvtu_fields"),
+        lists=True,
+    ),
+    Format(suffixes=(".vti",), read=_late("vti", "read_vti"), fields=_late("vti", "vti_fields")),
+    Format(
+        suffixes=(".pvti",),
+        read=_late("vti", "read_pvti"),
+        files=_late("vti", "pvti_files"),
+        fields=_late("vti", "pvti_fields"),
+        lists=True,
+    ),
 )
 
 #: The row of each suffix.

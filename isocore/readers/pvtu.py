@@ -10,10 +10,10 @@ import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from xml.parsers import expat
 
 from isocore.cell_mesh import CellMesh
-from isocore.errors import FieldError, InputError, reading
+from isocore.errors import FieldError, reading
+from isocore.readers.listing import beside, elements, refuse_missing
 from isocore.readers.options import ReadOptions
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
@@ -21,7 +21,6 @@ from isocore.readers.vtk_pieces import PieceData
 from isocore.readers.vtu import open_vtu
 from isocore.readers.vtu_source import NoCells
 
-_LONGEST = 64 << 20  # bytes of a list of pieces
 _NAMED = 5  # fields that a warning names
 
 
@@ -30,11 +29,7 @@ class PiecesSource:
 
     def __init__(self, path: str, files: list[Path]) -> None:
         self.path = path
-        missing = [file for file in files if not file.is_file()]
-        if missing:
-            count = f"{len(missing):,} of its {len(files):,} pieces are missing, the first is"
-            one = f"one of its {len(files):,} pieces is missing,"
-            raise InputError(f"{path}: {one if len(missing) == 1 else count} {missing[0]}; copy it there")
+        refuse_missing(path, files, "pieces")
         self.files: list[Path] = []
         common: dict[tuple[str, str], FieldInfo] = {}
         partial: set[str] = set()
@@ -102,40 +97,8 @@ def _alike(field: FieldInfo, other: FieldInfo | None) -> bool:
 
 def _pieces(path: Path) -> list[Path]:
     """The files that a .pvtu names, in its order; InputError where it is none or names none."""
-    if path.stat().st_size > _LONGEST:
-        raise InputError(f"{path}: is too long for a list of pieces; check that it is what its suffix says")
-    found: list[Path] = []
-    seen: list[str] = []
-    parser = expat.ParserCreate()
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        if not seen:
-            kind = attributes.get("type", "object of no type")
-            if tag != "VTKFile" or kind != "PUnstructuredGrid":
-                what = f"holds a VTK {kind}" if tag == "VTKFile" else f"starts with <{tag}>"
-                raise InputError(f"{path}: {what}; a .pvtu lists the pieces of an unstructured grid")
-        seen.append(tag)
-        if tag == "Piece":
-            name = attributes.get("Source", "").strip()
-            if not name:
-                raise InputError(f"{path}: piece {len(found) + 1:,} names no file; write it again")
-            found.append(beside(path, name))
-
-    parser.StartElementHandler = start
-    try:
-        parser.Parse(path.read_bytes(), True)
-    except expat.ExpatError as error:
-        raise InputError(
-            f"{path}: its XML is broken near line {error.lineno:,} ({expat.ErrorString(error.code)}); copy it again"
-        ) from error
+    tags = elements(path, "PUnstructuredGrid", "lists the pieces of an unstructured grid")
+    found = [beside(path, attributes.get("Source", "").strip()) for tag, attributes in tags if tag == "Piece"]
     if not found:
         raise FieldError(f"{path}: names no pieces, so there is nothing to contour")
     return found
-
-
-def beside(path: Path, name: str) -> Path:
-    """A file that another one names, from that one's folder. Backslashes of Windows part folders, too."""
-    if "\0" in name:
-        raise InputError(f"{path}: names the file {name[:40]!r}, which no file is called; write it again")
-    file = path.parent / name
-    return path.parent / name.replace("\\", "/") if "\\" in name and not file.exists() else file

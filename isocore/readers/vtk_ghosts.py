@@ -16,7 +16,8 @@ from isocore.errors import InputError
 GHOST_TYPE = "vtkGhostType"
 #: Names of arrays that mark cells, and the bits that count: duplicate (1), refined (8) and hidden (32) of VTK's.
 OF_CELLS = {GHOST_TYPE: 1 | 8 | 32, "vtkGhostLevels": ~0, "avtGhostZones": ~0}
-_HIDDEN_POINT = 2
+#: Of a point, and of a cell.
+HIDDEN_POINT, HIDDEN_CELL = 2, 32
 
 
 def ghost_cells(path: str, name: str, marks: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
@@ -28,7 +29,7 @@ def ghost_cells(path: str, name: str, marks: npt.NDArray[Any]) -> npt.NDArray[np
 def hidden_points(path: str, marks: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
     """(n,) True for the points that `vtkGhostType` hides. Duplicate points are as good as any."""
     _check(path, GHOST_TYPE, marks)
-    return np.asarray((marks & marks.dtype.type(_HIDDEN_POINT)) != 0)
+    return np.asarray((marks & marks.dtype.type(HIDDEN_POINT)) != 0)
 
 
 def cells_at(

@@ -9,11 +9,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import prod
 from mmap import mmap
 from xml.parsers import expat
 
 from isocore.errors import InputError
 
+UNSTRUCTURED, IMAGE = "UnstructuredGrid", "ImageData"
+#: First and last indices along each axis.
+Extent = tuple[int, int, int, int, int, int]
 SECTIONS = ("PointData", "CellData", "Points", "Cells")
 _TAG = re.compile(rb"""<(?:[^<>"']++|"[^"<]*+"|'[^'<]*+')*+>""")
 _TEXT = re.compile(rb"\S")
@@ -40,10 +44,11 @@ class ArrayTag:
 
 @dataclass(slots=True)
 class Piece:
-    """One <Piece>: the sizes it promises and its arrays by section."""
+    """One <Piece>: the sizes it promises and its arrays by section. extent: of an image, its first and last indices."""
 
     points: int
     cells: int
+    extent: Extent = (0, 0, 0, 0, 0, 0)
     arrays: dict[str, list[ArrayTag]] = field(default_factory=lambda: {name: [] for name in SECTIONS})
 
     def named(self, section: str, *names: str) -> list[ArrayTag]:
@@ -54,7 +59,10 @@ class Piece:
 
 @dataclass(slots=True)
 class Layout:
-    """What the tags say. appended: (encoding, byte offset behind the underscore), or None."""
+    """What the tags say. appended: (encoding, byte offset behind the underscore), or None.
+
+    grid: attributes of the tag around the pieces, which place an image in the world.
+    """
 
     version: tuple[int, int] = (0, 1)
     byte_order: str = "LittleEndian"
@@ -62,13 +70,14 @@ class Layout:
     compressor: str = ""
     pieces: list[Piece] = field(default_factory=list)
     appended: tuple[str, int] | None = None
+    grid: dict[str, str] = field(default_factory=dict)
 
 
 class _Scan:
     """Builds a Layout from the start and end tags it is told of."""
 
-    def __init__(self, path: str) -> None:
-        self.path = path
+    def __init__(self, path: str, kind: str) -> None:
+        self.path, self.kind = path, kind
         self.layout = Layout()
         self.open: list[tuple[str, dict[str, str]]] = []
         self.runs: list[tuple[int, int]] = []
@@ -78,10 +87,10 @@ class _Scan:
         self.open.append((tag, attributes))
         if len(self.open) == 1:
             self._root(tag, attributes)
+        elif tag == self.kind:
+            self.layout.grid = attributes
         elif tag == "Piece":
-            self.layout.pieces.append(
-                Piece(self._count(attributes, "NumberOfPoints"), self._count(attributes, "NumberOfCells"))
-            )
+            self.layout.pieces.append(self._piece(attributes))
         elif tag == "DataArray":
             self.runs = []
         elif tag == "AppendedData":
@@ -103,11 +112,9 @@ class _Scan:
                 f"{self.path}: is not a VTK file (its first tag is <{tag}>); a .vtu starts with <VTKFile>"
             )
         kind = attributes.get("type", "")
-        if kind != "UnstructuredGrid":
-            raise InputError(
-                f"{self.path}: holds a VTK {kind or 'object of no type'}, not an UnstructuredGrid;"
-                " convert it to one with cells that fill space"
-            )
+        if kind != self.kind:
+            what = f"{self.path}: holds a VTK {kind or 'object of no type'}, not an {self.kind}"
+            raise InputError(f"{what}; convert it to one" + " with cells that fill space" * (self.kind == UNSTRUCTURED))
         layout = self.layout
         if match := re.match(r"\s*(\d{1,9})\.(\d{1,9})", attributes.get("version", "")):
             layout.version = int(match[1]), int(match[2])
@@ -120,6 +127,13 @@ class _Scan:
             )
         if layout.header_type not in ("UInt32", "UInt64"):
             raise InputError(f"{self.path}: header_type {layout.header_type!r} is unknown; UInt32 or UInt64")
+
+    def _piece(self, attributes: dict[str, str]) -> Piece:
+        if self.kind == UNSTRUCTURED:
+            return Piece(self._count(attributes, "NumberOfPoints"), self._count(attributes, "NumberOfCells"))
+        extent = extent_of(self.path, attributes.get("Extent", ""))
+        sizes = [high - low + 1 for low, high in zip(extent[::2], extent[1::2], strict=True)]
+        return Piece(prod(sizes), prod(max(1, size - 1) for size in sizes), extent)
 
     def _array(self, attributes: dict[str, str], section: str) -> ArrayTag:
         name = attributes.get("Name", section)
@@ -145,11 +159,24 @@ class _Scan:
         return int(text)
 
 
-def scan(path: str, data: mmap | bytes) -> Layout:
-    """The layout of the VTU file mapped as `data`; InputError where its tags are not what they should be."""
+def extent_of(path: str, text: str) -> Extent:
+    """First and last index along each axis; InputError where these are not six numbers that ascend in pairs."""
+    words = text.split()
+    numbers = [int(word) for word in words if re.fullmatch(r"[+-]?\d{1,9}", word, re.ASCII)]
+    if len(numbers) != 6 or len(words) != 6 or any(numbers[n] > numbers[n + 1] for n in (0, 2, 4)):
+        raise InputError(f"{path}: has the extent {text[:60]!r}, not three pairs of indices; write it again")
+    a, b, c, d, e, f = numbers
+    return a, b, c, d, e, f
+
+
+def scan(path: str, data: mmap | bytes, kind: str = UNSTRUCTURED) -> Layout:
+    """The layout of the VTU file mapped as `data`, or of another kind of VTK's XML files.
+
+    Raises InputError where its tags are not what they should be.
+    """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<"):
         raise UnusualLayout("UTF-16")
-    seen = _Scan(path)
+    seen = _Scan(path, kind)
     parser = expat.ParserCreate()
     parser.StartElementHandler = seen.start
     parser.EndElementHandler = seen.end

@@ -129,7 +129,7 @@ def test_fields_that_not_all_pieces_hold_are_left_out_with_a_warning(tmp_path):
         ('<VTKFile type="UnstructuredGrid"/>', "is an unstructured grid of VTK; rename it to end in .vtu"),
         ("<html/>", "starts with <html>"),
         ('<VTKFile type="PUnstructuredGrid"/>', "names no pieces"),
-        ('<VTKFile type="PUnstructuredGrid"><Piece/></VTKFile>', "piece 1 names no file"),
+        ('<VTKFile type="PUnstructuredGrid"><Piece/></VTKFile>', "names the file '', which no file is called"),
         ('<VTKFile type="PUnstructuredGrid"><Piece Source="a">', "its XML is broken near line 1"),
     ],
 )
