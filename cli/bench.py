@@ -115,12 +115,12 @@ def _tables(path: Path, wanted: Wanted) -> list[Table]:
             return mesh_bench(field, isovalues=wanted.isovalues, threads=wanted.threads)
         if wanted.backend == "thinning":
             return grid_bench(field, isovalues=wanted.isovalues, threads=wanted.threads)
-        return [_volume_table(field, wanted)]
+        return [_volume_table(path, field, wanted)]
     except FieldError as error:
         raise FieldError(f"{path}: {error}") from error
 
 
-def _volume_table(volume: Volume, wanted: Wanted) -> Table:
+def _volume_table(path: Path, volume: Volume, wanted: Wanted) -> Table:
     from isocore.benches.climbing import render_csv, render_markdown, volume_bench
     from isocore.benches.climbing_plot import render_svg
     from isocore.choices import parse_choices
@@ -132,15 +132,18 @@ def _volume_table(volume: Volume, wanted: Wanted) -> Table:
     if len(asked) != 1:
         raise click.UsageError(f"-i {wanted.isovalue}: bench takes one isovalue")
     threads = wanted.threads
-    found = volume_bench(volume, choose(asked[0], histogram(volume, threads=threads)).isovalue, threads=threads)
+    chosen = choose(asked[0], histogram(volume, threads=threads))
+    for warning in (*volume.warnings, *chosen.warnings):
+        say(f"isocore: warning: {printable(f'{path}: {warning}')}")
+    found = volume_bench(volume, chosen.isovalue, threads=threads)
     table = found.table()
-    for path, text in (
+    for target, text in (
         (wanted.csv, render_csv(table)),
         (wanted.markdown, render_markdown(table)),
         (wanted.plot, render_svg(found)),
     ):
-        if path is not None:
-            with whole_file(path) as stream:
+        if target is not None:
+            with whole_file(target) as stream:
                 stream.write(text.encode())
     return table
 

@@ -16,6 +16,19 @@ from small_files import ball, write_nifti
 KNOT = SAMPLES / "knot.nii.gz"
 
 
+def test_bench_says_what_was_set_aside(tmp_path: Path) -> None:
+    """A fill value decides neither the isovalue nor the range of those that thinning walks; --ignore leaves it out."""
+    samples = ball()
+    samples[:3] = 1e20
+    source = str(write_nifti(tmp_path / "ball.nii", samples))
+    told = CliRunner().invoke(bench, [source])
+    assert told.exit_code == 0 and "432 samples are 1e+20" in told.stderr
+    quiet = CliRunner().invoke(bench, [source, "--ignore", "1e20"])
+    assert quiet.exit_code == 0 and not quiet.stderr
+    table = json.loads(CliRunner().invoke(bench, [source, "-b", "thinning", "--json"]).stdout)[0]["tables"][0]
+    assert all(row["intersected"] > 20 * 100 for row in table["rows"])
+
+
 def test_a_volume_gives_the_papers_table_and_plot(tmp_path: Path) -> None:
     """Block sizes 1 to 32, several bounds, as text, CSV, Markdown and SVG."""
     source = write_nifti(tmp_path / "ball.nii", ball())
