@@ -25,6 +25,7 @@ from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
 from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
 from isocore.requirements import missed
+from isocore.rounded_error import remeasured
 from isocore.segmentation import isovalue_warnings, label_count
 from isocore.surface import Point
 from isocore.timer import Timer
@@ -62,9 +63,12 @@ def convert(job: Job) -> Iterator[RunReport]:
                     found = extract(chosen.isovalue)
                 timer.move(found.seconds_normals, "extract", "normals")
                 with timer("measure"):
-                    surface = moved_surface(found.surface, source, offset)
-                    surface, losses = rounded(surface, job.format, threads)
+                    exact = moved_surface(found.surface, source, offset)
+                    surface, losses = rounded(exact, job.format, threads)
                     measured = measure(as_read(surface, job.format, threads), threads=threads)
+                    findings = found.findings
+                    if surface is not exact:
+                        findings = remeasured(findings, source, chosen.isovalue, surface, job.options)
                 with timer("write"):
                     written = write_target(surface, target, job)
                     _write_ambiguities(source, chosen.isovalue, job, offset)
@@ -91,11 +95,11 @@ def convert(job: Job) -> Iterator[RunReport]:
                     backend=backend,
                     backend_chosen=why,
                     surface=measured,
-                    findings=_named(found.findings, target.choice),
+                    findings=_named(findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
-                del found, surface
+                del found, exact, surface
                 yield requirements_checked(reference.compared(run), job)
             done += 1
     except (IsocoreError, MemoryError) as error:

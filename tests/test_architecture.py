@@ -24,7 +24,7 @@ FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "rema
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
 #: What becomes of coordinates on their way to the file.
-PLACES = {"offset", "outputs"}
+PLACES = {"offset", "outputs", "rounded_error"}
 #: Importing one file of a batch tells nothing about another: each says for itself what it knows of the others.
 BATCHED = NOUNS | {"report", "whole_file"}
 
@@ -67,6 +67,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "remarks": NOUNS | {"field_facts", "histogram", "isovalue", "measurements"},
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
     "outputs": NOUNS | {"report/sections", "whole_file", "writers"},
+    "rounded_error": NOUNS | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),

@@ -8,6 +8,7 @@ from typing import Any
 
 import meshes
 import meshio
+import nrrd
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -221,3 +222,48 @@ def test_a_job_in_python_takes_an_offset_as_text(tmp_path):
     scan = write_nifti(tmp_path / "ball.nii", ball(8))
     (found,) = convert_job(Job(source=scan, targets=(Target("50", tmp_path / "a.ply"),), offset="1,2,3"))
     assert found.offset == (1, 2, 3)
+
+
+def distances(points, corners):
+    """Of points (n, 3) to the nearest of triangles (t, 3, 3), one by one, all in float64."""
+    a, b, c = (corners[:, n] for n in range(3))
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    found = []
+    for point in points:
+        height = np.einsum("ij,ij->i", point - a, normal)
+        inside = np.ones(len(a), bool)
+        best = np.full(len(a), np.inf)
+        for start, end in ((a, b), (b, c), (c, a)):
+            way, off = end - start, point - start
+            inside &= np.einsum("ij,ij->i", np.cross(normal, way), off) >= 0
+            t = np.clip(np.einsum("ij,ij->i", off, way) / np.einsum("ij,ij->i", way, way), 0, 1)
+            best = np.minimum(best, np.linalg.norm(off - t[:, None] * way, axis=1))
+        found.append(np.where(inside, np.minimum(best, np.abs(height)), best).min())
+    return np.array(found)
+
+
+@pytest.mark.parametrize("format_", ["stl", "obj"])
+def test_the_error_is_that_of_the_vertices_in_the_file(tmp_path, format_):
+    """Of a volume so far away that its vertices move by a good part of a voxel, in voxels and in the world."""
+    place = np.array([3.1e6, -2.2e6, 1e5]) * (1 if format_ == "stl" else 40)
+    affine = np.eye(4)
+    affine[:3] = [[0.4, 0.1, 0, place[0]], [0, 0.5, 0, place[1]], [0, 0, 0.6, place[2]]]
+    scan, out = tmp_path / "far.nrrd", tmp_path / f"out.{format_}"
+    header = {"space": "left-posterior-superior", "space origin": affine[:3, 3], "space directions": affine[:3, :3].T}
+    nrrd.write(str(scan), ball(14, radius=5.0), header)
+    run(scan, "-i", 50, "-o", out, "--max-error", 0.3, "--report", tmp_path / "run.json")
+    run(scan, "-i", 50, "-b", "mc", "--space", "index", "-o", tmp_path / "mc.ply", "--no-normals")
+    points, triangles = mesh_in(out)
+    index = (points - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    reference = mesh_in(tmp_path / "mc.ply")[0]
+    said = record(tmp_path / "run.json")["error"]
+    spacing = np.linalg.norm(affine[:3, :3], axis=0)
+    corners = index[triangles]
+    corners = corners[np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).any(axis=1)]
+    for suffix, scale in (("", np.ones(3)), ("_world", spacing)):
+        found = distances(reference * scale, corners * scale)
+        assert said[f"max{suffix}"] == pytest.approx(found.max(), rel=1e-6)
+        assert said[f"mean{suffix}"] == pytest.approx(found.mean(), rel=1e-6)
+        assert said[f"rms{suffix}"] == pytest.approx(np.sqrt((found**2).mean()), rel=1e-6)
+    assert said["max"] > 0.3

@@ -2,6 +2,7 @@
 #include <nanobind/stl/string.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "python/arrays.hpp"
@@ -9,7 +10,9 @@
 #include "python/named_tuple.hpp"
 #include "samples/sample_types.hpp"
 #include "surface/format.hpp"
+#include "surface/intersections/self_intersections.hpp"
 #include "surface/measure.hpp"
+#include "surface/nearness/distances.hpp"
 #include "surface/normals.hpp"
 #include "surface/place.hpp"
 #include "surface/size.hpp"
@@ -130,6 +133,13 @@ void bind_real(nb::module_& module) {
         },
         arg("vertices").noconvert(), arg("triangles").noconvert(), arg("threads") = 1);
     module.def(
+        "self_intersections",
+        [](const Rows<Real, 3>& vertices, const Triangles& triangles, int threads) {
+            nb::gil_scoped_release unlocked;
+            return self_intersections(mesh_view(vertices, triangles), threads);
+        },
+        arg("vertices").noconvert(), arg("triangles").noconvert(), arg("threads") = 1);
+    module.def(
         "weld",
         [](const Rows<Real, 3>& vertices, int threads) {
             return make_records([&] { return weld(vertices.data(), vertices.shape(0), threads); });
@@ -172,6 +182,19 @@ void bind_surface(nb::module_& module) {
             turn_normals(normals.data(), normals.shape(0), to_affine(affine), threads);
         },
         arg("normals").noconvert(), arg("affine").noconvert(), arg("threads") = 1);
+    module.def(
+        "distances_to",
+        [=](const Rows<double, 3>& vertices, const Triangles& triangles, const Rows<double, 3>& points, int threads) {
+            const std::size_t count = points.shape(0);
+            Distances found;
+            {
+                nb::gil_scoped_release unlocked;
+                found = distances_to(mesh_view(vertices, triangles), points.data(), count, threads);
+            }
+            const double all = count ? static_cast<double>(count) : 1;
+            return nb::make_tuple(found.largest, found.sum / all, std::sqrt(found.squares / all));
+        },
+        arg("vertices").noconvert(), arg("triangles").noconvert(), arg("points").noconvert(), arg("threads") = 1);
     module.def(
         "nine_digits",
         [](const Rows<double, 3>& rows, int threads) {

@@ -179,9 +179,22 @@ Size size_of(const MeshView<Real>& mesh, int threads) {
     return total;
 }
 
+template <class Real>
+std::vector<VertexRange> ranges_of(const MeshView<Real>& mesh, int threads) {
+    std::vector<VertexRange> ranges((mesh.triangle_count + kTrianglesPerBlock - 1) / kTrianglesPerBlock);
+    parallel_for(threads, ranges.size(), [&](std::size_t block) {
+        const std::size_t last = std::min(mesh.triangle_count, (block + 1) * kTrianglesPerBlock);
+        ranges[block] = checked_range(mesh.triangles + 3 * block * kTrianglesPerBlock, mesh.triangles + 3 * last,
+                                      mesh.vertex_count);
+    });
+    return ranges;
+}
+
 template std::array<double, 6> bounds(const float*, std::size_t);
 template std::array<double, 6> bounds(const double*, std::size_t);
 template Size size_of(const MeshView<float>&, int);
 template Size size_of(const MeshView<double>&, int);
+template std::vector<VertexRange> ranges_of(const MeshView<float>&, int);
+template std::vector<VertexRange> ranges_of(const MeshView<double>&, int);
 
 }  // namespace isocore

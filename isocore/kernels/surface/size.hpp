@@ -27,4 +27,8 @@ struct Size {
 template <class Real>
 Size size_of(const MeshView<Real>& mesh, int threads);
 
+// The same ranges alone.
+template <class Real>
+std::vector<VertexRange> ranges_of(const MeshView<Real>& mesh, int threads);
+
 }  // namespace isocore
