@@ -70,6 +70,30 @@ def climb(
 # sample_ranges: the lowest and highest sample of blocks of 64 x 16 x 16, by turns, for climb's `ranges`
 def sample_ranges(samples: _Samples, threads: int = 1) -> npt.NDArray[Any]: ...
 
+# simplify: every distance is in coordinates times `stretch`; cell: the side of a cell, in coordinates
+class SimplifiedMesh(NamedTuple):
+    vertices: _Real  # some of those that came in, in their order
+    triangles: _Int32
+    collapses: int
+    refused: tuple[int, int, int, int, int]  # by link, shape, outward, back, crossing
+    unproved: int  # triangles that may lie further from the reference than the bound
+    error_max: float  # from the reference's vertices to the surface, and their sum, and that of their squares
+    error_sum: float
+    error_squares: float
+    back_max: float  # no point of the surface lies further from the reference
+
+def simplify(
+    vertices: _Real,
+    triangles: _Int32,
+    reference_vertices: _Real,
+    reference_triangles: _Int32,
+    max_error: float,
+    stretch: tuple[float, float, float] = ...,
+    cell: float = 1.0,
+    most_triangles: int = 0,
+    threads: int = 1,
+) -> SimplifiedMesh: ...
+
 class AmbiguousFaces(NamedTuple):
     places: _Float64  # (n, 3), index space: the saddle of each face
     distances: _Float64  # (n,), of the saddle's value from the isovalue

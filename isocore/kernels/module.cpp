@@ -16,4 +16,5 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_rivals(module);
     isocore::python::bind_joining(module);
     isocore::python::bind_labels(module);
+    isocore::python::bind_simplification(module);
 }

@@ -8,6 +8,7 @@ void test_selection();
 void test_signs();
 void test_halvings();
 void test_facets();
+void test_meeting();
 void test_polygons();
 void test_in_order();
 void test_cell_loops();
@@ -25,6 +26,7 @@ int main() {
     test_signs();
     test_halvings();
     test_facets();
+    test_meeting();
     test_polygons();
     test_in_order();
     test_cell_loops();

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "check.hpp"
-#include "climbing/error/facets.hpp"
-#include "climbing/vectors.hpp"
+#include "common/facets.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 
 namespace {
 
 using namespace isocore;
-using namespace isocore::climbing;
 using Exact = Vector<double>;
 using Triangle = std::array<Spot, 3>;
 

@@ -15,10 +15,11 @@
 #include "check.hpp"
 #include "climbing/triangles/polygon.hpp"
 #include "climbing/triangles/polygons.hpp"
-#include "climbing/vectors.hpp"
+#include "common/vectors.hpp"
 
 namespace {
 
+using namespace isocore;
 using namespace isocore::climbing;
 using Triangles = std::vector<std::array<std::size_t, 3>>;
 

@@ -19,5 +19,6 @@ void bind_rivals(nanobind::module_& module);
 void bind_ambiguities(nanobind::module_& module);
 void bind_joining(nanobind::module_& module);
 void bind_labels(nanobind::module_& module);
+void bind_simplification(nanobind::module_& module);
 
 }  // namespace isocore::python

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "climbing/crossings/cloud.hpp"
-#include "climbing/vectors.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 
-#include "climbing/vectors.hpp"
 #include "common/array.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

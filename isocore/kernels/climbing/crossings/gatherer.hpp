@@ -6,7 +6,7 @@
 #include "climbing/crossings/ligns.hpp"
 #include "climbing/crossings/site.hpp"
 #include "climbing/types.hpp"
-#include "climbing/vectors.hpp"
+#include "common/vectors.hpp"
 #include "samples/sample_reader.hpp"
 
 namespace isocore::climbing {

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "climbing/vectors.hpp"
 #include "common/crossing.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 #include "samples/sample_reader.hpp"
 
 namespace isocore::climbing {

@@ -11,10 +11,10 @@
 #include "climbing/boxes/bars.hpp"
 #include "climbing/crossings/spotter.hpp"
 #include "climbing/error/deviation.hpp"
-#include "climbing/error/facets.hpp"
 #include "climbing/triangles/box_edges.hpp"
 #include "climbing/types.hpp"
-#include "climbing/vectors.hpp"
+#include "common/facets.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "climbing/vectors.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "climbing/triangles/loop_triangles.hpp"
-#include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "climbing/triangles/loop_triangles.hpp"
-#include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 
 namespace isocore::climbing {
 

@@ -16,10 +16,10 @@
 #include <array>
 #include <cstddef>
 
-#include "climbing/vectors.hpp"
 #include "common/lanes.hpp"
+#include "common/vectors.hpp"
 
-namespace isocore::climbing {
+namespace isocore {
 
 // clear(), add() for each triangle, find_frames(), then any number of squared_distances().
 class Facets {
@@ -37,6 +37,22 @@ class Facets {
     // covered by its neighbours' sides.
     void squared_distances(std::size_t first, std::size_t count, const Vector<const float*>& points, std::size_t size,
                            float* out) const;
+    // The squared distances from eight points, one in each lane, to one triangle.
+    Floats from_points(std::size_t triangle, const Vector<Floats>& points) const {
+        return squared_distances([&](std::size_t column) { return Floats(columns_[column][triangle]); }, points);
+    }
+    // The squared distances from one point, the same in all lanes, to the triangles from `first` on, one in each lane.
+    // `first` is a multiple of the number of lanes; what comes out for triangles that were not added has no meaning.
+    Floats from_point(std::size_t first, const Vector<Floats>& point) const {
+        return squared_distances([&](std::size_t column) { return in_lanes(column, first); }, point);
+    }
+
+    // A triangle's frame, as drawn above.
+    struct Frame {
+        Spot origin, u, v, h;
+        float length, top_u, top_v;
+    };
+    Frame frame(std::size_t triangle) const;
 
   private:
     // What is stored of each triangle, by column. Corners and axes are three columns each, x, y and z.
@@ -59,6 +75,7 @@ class Facets {
     void find_frames(std::size_t first);
     Floats from_points(std::size_t first, std::size_t count, const Vector<Floats>& points) const;
     float from_point(std::size_t first, std::size_t count, const Vector<Floats>& point) const;
+    // get(column): of one triangle in all lanes, or of one triangle in each.
     template <class Get>
     static Floats squared_distances(const Get& get, const Vector<Floats>& points);
 
@@ -76,4 +93,24 @@ inline void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
     ++size_;
 }
 
-}  // namespace isocore::climbing
+// Inline, as simplification calls it for a few points at a time.
+template <class Get>
+inline auto Facets::squared_distances(const Get& get, const Vector<Floats>& points) -> Floats {
+    const auto vector = [&](std::size_t column) -> Vector<Floats> {
+        return {get(column), get(column + 1), get(column + 2)};
+    };
+    const auto squared = [](const Floats& a, const Floats& b) { return a * a + b * b; };
+    const auto clamped = [](const Floats& a) { return least(Floats(1.0f), greatest(Floats(0.0f), a)); };
+    const Floats zero(0.0f), length = get(kLength), top_u = get(kTopU), top_v = get(kTopV), base = top_u - length;
+    const auto from_corner = minus(points, vector(kCornerA));
+    const Floats u = dot(from_corner, vector(kAxisU)), v = dot(from_corner, vector(kAxisV)),
+                 h = dot(from_corner, vector(kAxisH)), beyond = u - length, rise = v * top_v;
+    // t and s: how far along the right and the left side, from 0 at the bottom to 1 at the top, the nearest point is.
+    const Floats t = clamped((beyond * base + rise) * get(kPerRight)), s = clamped((u * top_u + rise) * get(kPerLeft));
+    const Floats bottom = squared(u - least(length, greatest(zero, u)), v),
+                 right = squared(beyond - t * base, v - t * top_v), left = squared(u - s * top_u, v - s * top_v);
+    const auto inside = (zero <= v) & (beyond * top_v <= v * base) & (v * top_u <= u * top_v);
+    return h * h + choose(inside, zero, least(bottom, least(right, left)));
+}
+
+}  // namespace isocore

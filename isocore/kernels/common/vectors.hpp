@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace isocore::climbing {
+namespace isocore {
 
 template <class Number>
 using Vector = std::array<Number, 3>;
@@ -29,4 +29,4 @@ Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-}  // namespace isocore::climbing
+}  // namespace isocore

@@ -1,9 +1,9 @@
-#include "climbing/error/facets.hpp"
+#include "common/facets.hpp"
 
 #include <algorithm>
 #include <limits>
 
-namespace isocore::climbing {
+namespace isocore {
 
 void Facets::find_frames() {
     for (std::size_t first = 0; first < size_; first += kLanes) find_frames(first);
@@ -73,24 +73,10 @@ float Facets::from_point(std::size_t first, std::size_t count, const Vector<Floa
     return best.least_lane();
 }
 
-// get(column): of one triangle in all lanes, or of one triangle in each.
-template <class Get>
-auto Facets::squared_distances(const Get& get, const Vector<Floats>& points) -> Floats {
-    const auto vector = [&](std::size_t column) -> Vector<Floats> {
-        return {get(column), get(column + 1), get(column + 2)};
-    };
-    const auto squared = [](const Floats& a, const Floats& b) { return a * a + b * b; };
-    const auto clamped = [](const Floats& a) { return least(Floats(1.0f), greatest(Floats(0.0f), a)); };
-    const Floats zero(0.0f), length = get(kLength), top_u = get(kTopU), top_v = get(kTopV), base = top_u - length;
-    const auto from_corner = minus(points, vector(kCornerA));
-    const Floats u = dot(from_corner, vector(kAxisU)), v = dot(from_corner, vector(kAxisV)),
-                 h = dot(from_corner, vector(kAxisH)), beyond = u - length, rise = v * top_v;
-    // t and s: how far along the right and the left side, from 0 at the bottom to 1 at the top, the nearest point is.
-    const Floats t = clamped((beyond * base + rise) * get(kPerRight)), s = clamped((u * top_u + rise) * get(kPerLeft));
-    const Floats bottom = squared(u - least(length, greatest(zero, u)), v),
-                 right = squared(beyond - t * base, v - t * top_v), left = squared(u - s * top_u, v - s * top_v);
-    const auto inside = (zero <= v) & (beyond * top_v <= v * base) & (v * top_u <= u * top_v);
-    return h * h + choose(inside, zero, least(bottom, least(right, left)));
+auto Facets::frame(std::size_t triangle) const -> Frame {
+    const auto get = [&](std::size_t column) { return columns_[column][triangle]; };
+    const auto vector = [&](std::size_t column) -> Spot { return {get(column), get(column + 1), get(column + 2)}; };
+    return {vector(kCornerA), vector(kAxisU), vector(kAxisV), vector(kAxisH), get(kLength), get(kTopU), get(kTopV)};
 }
 
-}  // namespace isocore::climbing
+}  // namespace isocore

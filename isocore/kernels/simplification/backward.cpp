@@ -1,0 +1,168 @@
+#include "simplification/backward.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace isocore::simplification {
+namespace {
+
+constexpr float kSmall = 4;             // cells: a longer triangle is halved before it is taken to pieces
+constexpr float kPiece = 0.65f;         // cells: the longest side of a piece
+constexpr int kHalvings = 5;            // of a piece
+constexpr int kMostHalvings = 64;       // of all pieces of a triangle
+constexpr int kDepth = 4;               // halvings of a triangle
+constexpr float kLeastMargin = 0.01f;   // cells
+constexpr std::size_t kMostSteps = 16;  // pieces along a side
+
+Spot between(const Spot& a, const Spot& b) {
+    return {0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])};
+}
+
+float longest_side(const std::array<Spot, 3>& t) {
+    float most = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+        const Spot side = minus(t[n], t[(n + 1) % 3]);
+        most = std::max(most, dot(side, side));
+    }
+    return std::sqrt(most);
+}
+
+// The four similar triangles that a triangle's middles cut it into: those at its corners, then that in the middle.
+template <class Corner, class Middle>
+std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, const Middle& middle) {
+    const Corner ab = middle(c[0], c[1]), bc = middle(c[1], c[2]), ca = middle(c[2], c[0]);
+    return {std::array{c[0], ab, ca}, std::array{ab, c[1], bc}, std::array{ca, bc, c[2]}, std::array{ab, bc, ca}};
+}
+
+}  // namespace
+
+template <class Real>
+bool Backward<Real>::are_near(const Star& star, float limit) {
+    limit_ = limit;
+    faces_.clear();
+    Box box = Box::around({star.place(0), star.place(1), star.place(2)}, limit + 1e-3f);
+    for (std::size_t n = 1; n + 1 < star.count; ++n) {
+        faces_.push_back({star.place(0), star.place(n), star.place(n + 1)});
+        box.add(Box::around(faces_.back(), limit + 1e-3f));
+    }
+    near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box);
+    return std::all_of(faces_.begin(), faces_.end(), [&](const Corners& face) { return is_near(face, near_star_, 0); });
+}
+
+template <class Real>
+bool Backward<Real>::is_near(std::int32_t triangle, float limit) {
+    limit_ = limit;
+    const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
+    const auto place = [&](std::size_t n) { return mesh_.places[static_cast<std::size_t>(corners[n])].at; };
+    const Corners face{Spot{0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0))};
+    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + 1e-3f));
+    return is_near(face, near_star_, 0);
+}
+
+// around: triangles of the reference, all that are near and perhaps others.
+template <class Real>
+bool Backward<Real>::is_near(const Corners& triangle, const Patch& around, int depth) {
+    Patch& near = near_[static_cast<std::size_t>(depth)];
+    near.select(around, Box::around(triangle, limit_ + 1e-3f));
+    if (near.size() == 0) return false;
+    frame_.clear();
+    frame_.add(triangle[0], triangle[1], triangle[2]);
+    frame_.find_frames();
+    if (column_.is_covered(frame_.frame(0), near, limit_)) return true;
+    if (longest_side(triangle) <= kSmall || depth + 1 == kDepth) {
+        // Some of the triangles may be enough: the nearest, where there are too many.
+        for (float margin = limit_; near.size() > kMostTriangles && margin > kLeastMargin; margin *= 0.7f)
+            near.select(around, Box::around(triangle, margin));
+        if (near.size() > kMostTriangles) return false;
+        facets_.clear();
+        for (std::size_t n = 0; n < near.size(); ++n)
+            facets_.add(near.corner(n, 0), near.corner(n, 1), near.corner(n, 2));
+        facets_.find_frames();
+        return is_near_by_pieces(triangle);
+    }
+    const auto parts = quarters(triangle, between);
+    return std::all_of(parts.begin(), parts.end(), [&](const Corners& part) { return is_near(part, near, depth + 1); });
+}
+
+// Distance to a convex set is a convex function: a piece whose three corners lie within the limit of one triangle of
+// the reference lies within the limit altogether.
+template <class Real>
+bool Backward<Real>::is_near_by_pieces(const Corners& t) {
+    const auto steps = static_cast<std::size_t>(longest_side(t) / kPiece) + 1;
+    if (steps > kMostSteps) return false;
+    const Spot ab = minus(t[1], t[0]), ac = minus(t[2], t[0]);
+    const auto point = [&](std::size_t i, std::size_t j) {
+        const float x = static_cast<float>(i) / static_cast<float>(steps),
+                    y = static_cast<float>(j) / static_cast<float>(steps);
+        return Spot{t[0][0] + x * ab[0] + y * ac[0], t[0][1] + x * ab[1] + y * ac[1], t[0][2] + x * ab[2] + y * ac[2]};
+    };
+    lattice_.clear();
+    halvings_ = kMostHalvings;
+    for (std::size_t j = 0; j <= steps; ++j) {
+        for (std::size_t i = 0; i + j <= steps; ++i) {
+            const Within found = lattice_.emplace_back(within(point(i, j)));
+            if (is_empty(found)) return false;
+        }
+    }
+    std::size_t row = 0;
+    for (std::size_t j = 0; j < steps; ++j) {
+        const std::size_t next = row + steps - j + 1;
+        for (std::size_t i = 0; i + j < steps; ++i) {
+            const auto holds = [&](std::array<std::size_t, 2> a, std::array<std::size_t, 2> b,
+                                   std::array<std::size_t, 2> c) {
+                const auto at = [&](const std::array<std::size_t, 2>& p) {
+                    return lattice_[(p[1] == j ? row : next) + p[0]];
+                };
+                return is_near_by_halves({point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])},
+                                         {at(a), at(b), at(c)}, kHalvings);
+            };
+            if (!holds({i, j}, {i + 1, j}, {i, j + 1})) return false;
+            if (i + j + 1 < steps && !holds({i + 1, j}, {i + 1, j + 1}, {i, j + 1})) return false;
+        }
+        row = next;
+    }
+    return true;
+}
+
+template <class Real>
+bool Backward<Real>::is_near_by_halves(const Corners& t, const std::array<Within, 3>& within_of, int depth) {
+    for (std::size_t word = 0; word < within_of[0].size(); ++word) {
+        if (within_of[0][word] & within_of[1][word] & within_of[2][word]) return true;
+    }
+    if (depth == 0) return false;
+    const auto parts = quarters(t, between);
+    if (halvings_ == 0) return false;
+    --halvings_;
+    const Within ab = within(parts[3][0]), bc = within(parts[3][1]), ca = within(parts[3][2]);
+    if (is_empty(ab) || is_empty(bc) || is_empty(ca)) return false;
+    const std::array<std::array<Within, 3>, 4> of_parts{std::array{within_of[0], ab, ca},
+                                                        std::array{ab, within_of[1], bc},
+                                                        std::array{ca, bc, within_of[2]}, std::array{ab, bc, ca}};
+    for (std::size_t n = 0; n < 4; ++n) {
+        if (!is_near_by_halves(parts[n], of_parts[n], depth - 1)) return false;
+    }
+    return true;
+}
+
+template <class Real>
+bool Backward<Real>::is_empty(const Within& set) {
+    return std::all_of(set.begin(), set.end(), [](std::uint64_t word) { return word == 0; });
+}
+
+template <class Real>
+auto Backward<Real>::within(const Spot& point) const -> Within {
+    const Vector<Floats> at{point[0], point[1], point[2]};
+    const Floats most(limit_ * limit_);
+    Within out{};
+    for (std::size_t first = 0; first < facets_.size(); first += kLanes) {
+        const std::size_t count = std::min(kLanes, facets_.size() - first);
+        const std::uint64_t bits = (facets_.from_point(first, at) <= most).bits() & ((1u << count) - 1);
+        out[first / 64] |= bits << first % 64;
+    }
+    return out;
+}
+
+template class Backward<float>;
+template class Backward<double>;
+
+}  // namespace isocore::simplification

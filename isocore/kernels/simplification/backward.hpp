@@ -1,0 +1,52 @@
+// backward.hpp - The bound backward: how far the points of a triangle, all of them, lie from the reference. What is
+// found is proved, not sampled: README.md says how.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/facets.hpp"
+#include "simplification/column.hpp"
+#include "simplification/patch.hpp"
+#include "simplification/reference.hpp"
+#include "simplification/star.hpp"
+
+namespace isocore::simplification {
+
+template <class Real>
+class Backward {
+  public:
+    Backward(const Reference<Real>& reference, const Mesh<Real>& mesh) : reference_(reference), mesh_(mesh) {}
+
+    // Is it proved that all points of the star's faces lie within the limit of the reference?
+    bool are_near(const Star& star, float limit);
+    // The same of one triangle of the mesh.
+    bool is_near(std::int32_t triangle, float limit);
+
+  private:
+    using Corners = std::array<Spot, 3>;
+    // A bit for each triangle of the patch: does a point lie within the limit of it?
+    static constexpr std::size_t kMostTriangles = Facets::kRoom;
+    using Within = std::array<std::uint64_t, kMostTriangles / 64>;
+
+    bool is_near(const Corners& triangle, const Patch& around, int depth);
+    bool is_near_by_pieces(const Corners& triangle);
+    bool is_near_by_halves(const Corners& triangle, const std::array<Within, 3>& within, int depth);
+    Within within(const Spot& point) const;
+    static bool is_empty(const Within& set);
+
+    const Reference<Real>& reference_;
+    const Mesh<Real>& mesh_;
+    float limit_ = 0;
+    Patch near_star_;
+    std::array<Patch, 4> near_;  // by depth
+    std::vector<Corners> faces_;
+    Column column_;
+    Facets frame_, facets_;
+    std::vector<Within> lattice_;
+    int halvings_ = 0;  // that may still be done
+};
+
+}  // namespace isocore::simplification

@@ -1,0 +1,58 @@
+// cells.hpp - The cells that everything here is found by: cubes of equal side, for volumes those of the sample grid.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "simplification/types.hpp"
+
+namespace isocore::simplification {
+
+using Cell = std::array<std::int32_t, 3>;
+
+struct Cells {
+    std::array<double, 3> origin{0, 0, 0};  // the low corner of cell 0, 0, 0
+    double per_cell = 1;                    // from coordinates to cells
+    std::array<std::size_t, 3> dims{1, 1, 1};
+
+    // Cells that hold all vertices of a mesh. Where the side is 1, corners of cells have whole coordinates.
+    template <class Real>
+    static Cells around(const MeshArrays<Real>& mesh, double side) {
+        std::array<double, 3> low, high;
+        low.fill(std::numeric_limits<double>::infinity());
+        high.fill(-std::numeric_limits<double>::infinity());
+        for (std::size_t n = 0; n < 3 * mesh.vertex_count; ++n) {
+            const double at = static_cast<double>(mesh.vertices[n]);
+            low[n % 3] = std::min(low[n % 3], at);
+            high[n % 3] = std::max(high[n % 3], at);
+        }
+        Cells out;
+        out.per_cell = 1 / side;
+        for (std::size_t a = 0; a < 3 && mesh.vertex_count > 0; ++a) {
+            out.origin[a] = std::floor(low[a] / side) * side;
+            out.dims[a] = static_cast<std::size_t>((high[a] - out.origin[a]) * out.per_cell) + 1;
+        }
+        return out;
+    }
+
+    double in_cells(double coordinate, std::size_t axis) const { return (coordinate - origin[axis]) * per_cell; }
+
+    // The cell of a place, clamped to those that there are.
+    template <class Real>
+    Cell at(const Real* place) const {
+        Cell out;
+        for (std::size_t a = 0; a < 3; ++a) out[a] = clamped(in_cells(static_cast<double>(place[a]), a), a);
+        return out;
+    }
+    std::int32_t clamped(double in_cells, std::size_t axis) const {
+        const double most = static_cast<double>(dims[axis] - 1);
+        return static_cast<std::int32_t>(std::clamp(in_cells, 0.0, most));
+    }
+    std::size_t count() const { return dims[0] * dims[1] * dims[2]; }
+};
+
+}  // namespace isocore::simplification

@@ -1,0 +1,138 @@
+#include "simplification/column.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace isocore::simplification {
+namespace {
+
+// Distances below this, in cells, are not told apart: some times what rounding does to places a few cells away.
+constexpr float kBlur = 1e-5f;
+constexpr float kFar = 1e9f;  // what lanes past the end hold
+
+}  // namespace
+
+bool Column::is_covered(const Facets::Frame& frame, const Patch& patch, float limit) {
+    frame_ = frame;
+    limit_ = limit;
+    count_ = 0;
+    if (places_[0].size() < patch.size() + 2 * kLanes) {
+        for (auto& column : places_) column.resize(2 * patch.size() + 2 * kLanes);
+    }
+    for (std::size_t first = 0; first < patch.size(); first += kLanes) {
+        if (!add_parts(patch, first)) return false;
+    }
+    for (auto& column : places_) Floats(kFar).store(column.data() + count_);
+    // One point is as good as another, unless a side of the reference passes too close to it.
+    return is_odd_at(0.37f, 0.29f) || is_odd_at(0.31f, 0.36f);
+}
+
+// Looks at eight triangles, and keeps those of which a part lies within the limit. False if one forbids a conclusion.
+bool Column::add_parts(const Patch& patch, std::size_t first) {
+    const auto lanes = [](const Spot& spot) { return Vector<Floats>{spot[0], spot[1], spot[2]}; };
+    const auto origin = lanes(frame_.origin), axis_u = lanes(frame_.u), axis_v = lanes(frame_.v),
+               axis_h = lanes(frame_.h);
+    const Floats length(frame_.length), top_u(frame_.top_u), top_v(frame_.top_v), base(frame_.top_u - frame_.length);
+    const float right_side =
+        std::sqrt((frame_.top_u - frame_.length) * (frame_.top_u - frame_.length) + frame_.top_v * frame_.top_v);
+    const float left_side = std::sqrt(frame_.top_u * frame_.top_u + frame_.top_v * frame_.top_v);
+    const Floats by_bottom(-kBlur), by_right(kBlur * right_side), by_left(kBlur * left_side);
+    Vector<Floats> u, v, h;
+    auto below = Floats(0.0f) <= Floats(0.0f), right = below, left = below;
+    for (std::size_t n = 0; n < 3; ++n) {
+        const auto at = minus(patch.in_lanes(n, first), origin);
+        u[n] = dot(at, axis_u);
+        v[n] = dot(at, axis_v);
+        h[n] = dot(at, axis_h);
+        below = below & (v[n] < by_bottom);
+        right = right & (by_right < (u[n] - length) * top_v - v[n] * base);
+        left = left & (by_left < v[n] * top_u - u[n] * top_v);
+    }
+    const Floats lowest = least(h[0], least(h[1], h[2])), highest = greatest(h[0], greatest(h[1], h[2]));
+    const Floats beyond(limit_ + kBlur), limit(limit_), zero(0.0f);
+    const auto beside = below | right | left | (beyond < lowest) | (highest < zero - beyond);
+    const unsigned valid = patch.size() - first < kLanes ? (1u << (patch.size() - first)) - 1 : 255u;
+    const unsigned over = ~beside.bits() & valid;
+    unsigned within = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
+    for (unsigned bits = over & ~within; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+        std::array<Height, 3> triangle;
+        for (std::size_t n = 0; n < 3; ++n) triangle[n] = {u[n].each()[lane], v[n].each()[lane], h[n].each()[lane]};
+        const Part part = part_of(triangle);
+        if (part == Part::across) return false;
+        if (part == Part::within) within |= 1u << lane;
+    }
+    if (within & patch.at_border(first)) return false;
+    for (std::size_t n = 0; n < 3; ++n) {
+        u[n].pack(within, places_[2 * n].data() + count_);
+        v[n].pack(within, places_[2 * n + 1].data() + count_);
+    }
+    count_ += static_cast<std::size_t>(std::popcount(within));
+    return true;
+}
+
+// What of a triangle lies in the column: clipped at the column's three walls, a blur outside.
+Column::Part Column::part_of(const std::array<Height, 3>& triangle) const {
+    std::array<Height, 6> part, next;
+    std::size_t count = 3;
+    std::copy(triangle.begin(), triangle.end(), part.begin());
+    const float base = frame_.top_u - frame_.length;
+    const std::array<std::array<float, 3>, 3> walls{
+        // u, v, constant: inside is where the sum is not above a blur
+        std::array{0.0f, -1.0f, 0.0f},
+        std::array{frame_.top_v, -base, -frame_.length * frame_.top_v},
+        std::array{-frame_.top_v, frame_.top_u, 0.0f},
+    };
+    for (const auto& [along, across, constant] : walls) {
+        const float blur = kBlur * std::hypot(along, across);
+        const auto beyond = [&](const Height& at) { return along * at.u + across * at.v + constant - blur; };
+        std::size_t kept = 0;
+        for (std::size_t n = 0; n < count; ++n) {
+            const Height &from = part[n], &to = part[n + 1 == count ? 0 : n + 1];
+            const float at_from = beyond(from), at_to = beyond(to);
+            if (at_from <= 0) next[kept++] = from;
+            if ((at_from <= 0) != (at_to <= 0)) {
+                const float share = at_from / (at_from - at_to);
+                next[kept++] = {from.u + share * (to.u - from.u), from.v + share * (to.v - from.v),
+                                from.h + share * (to.h - from.h)};
+            }
+        }
+        part = next;
+        count = kept;
+        if (count == 0) return Part::none;
+    }
+    const auto [low, high] = std::minmax_element(part.begin(), part.begin() + count,
+                                                 [](const Height& a, const Height& b) { return a.h < b.h; });
+    if (low->h > limit_ + kBlur || high->h < -limit_ - kBlur) return Part::beyond;
+    return low->h >= -limit_ && high->h <= limit_ ? Part::within : Part::across;
+}
+
+// Is a point of the triangle covered an odd number of times? No as well if that is hard to tell.
+bool Column::is_odd_at(float share, float other_share) const {
+    const Floats at_u(share * frame_.length + other_share * frame_.top_u), at_v(other_share * frame_.top_v);
+    const Floats zero(0.0f), one(1.0f), blur(kBlur);
+    const auto size = [&](const Floats& a) { return greatest(a, zero - a); };
+    int covered = 0;
+    for (std::size_t first = 0; first < count_; first += kLanes) {
+        const auto place = [&](std::size_t n) { return Floats(places_[n].data() + first); };
+        auto left = zero < zero, right = left, close = left;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const std::size_t m = n == 2 ? 0 : n + 1;
+            const Floats u = place(2 * n), v = place(2 * n + 1);
+            const Floats along = place(2 * m) - u, across = place(2 * m + 1) - v;
+            const Floats side = along * (at_v - v) - across * (at_u - u);
+            const Floats margin = blur * (one + size(along) + size(across));
+            left = left | (margin < side);
+            right = right | (side < zero - margin);
+            close = close | (size(side) <= margin);
+        }
+        const unsigned valid = count_ - first < kLanes ? (1u << (count_ - first)) - 1 : 255u;
+        const unsigned over = ~(left & right).bits() & valid;
+        if (over & close.bits()) return false;
+        covered += std::popcount(over);
+    }
+    return covered % 2 == 1;
+}
+
+}  // namespace isocore::simplification

@@ -1,0 +1,190 @@
+#include "simplification/mesh.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace isocore::simplification {
+namespace {
+
+// The bits of a number of up to 21 bits, two places apart from each other.
+std::uint64_t spread(std::uint64_t n) {
+    n = (n | n << 32) & 0x1f00000000ffff;
+    n = (n | n << 16) & 0x1f0000ff0000ff;
+    n = (n | n << 8) & 0x100f00f00f00f00f;
+    n = (n | n << 4) & 0x10c30c30c30c30c3;
+    return (n | n << 2) & 0x1249249249249249;
+}
+
+// Where a cell comes in the order of Morton: cells close to each other are mostly close in it, too.
+std::uint64_t morton(const Cell& cell, int brick_bits) {
+    std::uint64_t out = 0;
+    for (std::size_t a = 0; a < 3; ++a) out |= spread(static_cast<std::uint64_t>(cell[a] >> brick_bits)) << a;
+    return out;
+}
+
+}  // namespace
+
+std::int32_t* RingRoom::take(std::size_t size) {
+    constexpr std::size_t kBlock = 65536;
+    if (size > left_) {
+        blocks_.push_back(std::unique_ptr<std::int32_t[]>(new std::int32_t[kBlock]));
+        left_ = kBlock;
+    }
+    left_ -= size;
+    return blocks_.back().get() + left_;
+}
+
+template <class Real>
+Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch)
+    : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])} {
+    for (std::size_t n = 0; n < 3 * input.triangle_count; ++n) {
+        if (static_cast<std::size_t>(static_cast<std::uint32_t>(input.triangles[n])) >= input.vertex_count)
+            throw std::invalid_argument("a triangle names a vertex that does not exist");
+    }
+    number_vertices(input, cells);
+    number_triangles(input);
+    find_rings();
+    add_planes();
+}
+
+template <class Real>
+void Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cells) {
+    constexpr int kBrickBits = 2;
+    const std::size_t count = input.vertex_count;
+    std::vector<std::pair<std::uint64_t, std::int32_t>> order(count);
+    for (std::size_t n = 0; n < count; ++n)
+        order[n] = {morton(cells.at(input.vertices + 3 * n), kBrickBits), static_cast<std::int32_t>(n)};
+    std::sort(order.begin(), order.end());
+    places.resize(count);
+    original.resize(count);
+    renumbered_.resize(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::int32_t from = order[n].second;
+        const Real* const place = input.vertices + 3 * static_cast<std::size_t>(from);
+        places[n] = {{place[0], place[1], place[2]}, kNone};
+        original[n] = from;
+        renumbered_[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(n);
+    }
+}
+
+template <class Real>
+void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
+    const std::size_t count = input.triangle_count;
+    const auto corner = [&](std::size_t n) { return renumbered_[static_cast<std::size_t>(input.triangles[n])]; };
+    const auto lowest = [&](std::size_t t) {
+        return static_cast<std::size_t>(std::min({corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}));
+    };
+    std::vector<std::int32_t> next(input.vertex_count + 1);
+    for (std::size_t t = 0; t < count; ++t) ++next[lowest(t) + 1];
+    for (std::size_t v = 0; v < input.vertex_count; ++v) next[v + 1] += next[v];
+    triangles.resize(count);
+    original_triangles_.resize(count);
+    proved.resize(count);
+    std::fill(proved.begin(), proved.end(), std::uint8_t{0});
+    for (std::size_t t = 0; t < count; ++t) {
+        const auto to = static_cast<std::size_t>(next[lowest(t)]++);
+        triangles[to] = {{corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}, kNone};
+        original_triangles_[to] = static_cast<std::int32_t>(t);
+    }
+}
+
+template <class Real>
+void Mesh<Real>::find_rings() {
+    vertices.resize(places.size());
+    std::vector<std::size_t> starts(vertices.size() + 1);
+    for (const Triangle& triangle : triangles) {
+        for (const std::int32_t corner : triangle.corners) ++starts[static_cast<std::size_t>(corner) + 1];
+    }
+    for (std::size_t v = 0; v < vertices.size(); ++v) starts[v + 1] += starts[v];
+    rings_.resize(3 * triangles.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        vertices[v].ring = rings_.data() + starts[v];
+        const std::size_t count = starts[v + 1] - starts[v];
+        vertices[v].odd = count > Vertex::kMostTriangles;
+        vertices[v].count = static_cast<std::uint16_t>(std::min<std::size_t>(count, 65535));
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (const std::int32_t corner : triangles[t].corners)
+            rings_[starts[static_cast<std::size_t>(corner)]++] = static_cast<std::int32_t>(t);
+    }
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        if (!vertices[v].odd) order_ring(static_cast<std::int32_t>(v));
+    }
+}
+
+// Puts the triangles around a vertex in the order in which they follow each other.
+template <class Real>
+void Mesh<Real>::order_ring(std::int32_t number) {
+    Vertex& vertex = vertices[static_cast<std::size_t>(number)];
+    std::array<std::int32_t, Vertex::kMostTriangles> from, to;  // the neighbours between which a triangle lies
+    const std::size_t count = vertex.count;
+    for (std::size_t n = 0; n < count; ++n) {
+        const Triangle& triangle = triangles[static_cast<std::size_t>(vertex.ring[n])];
+        const std::size_t index = triangle.index_of(number);
+        from[n] = triangle.after(index);
+        to[n] = triangle.after(index == 2 ? 0 : index + 1);
+        if (from[n] == number || to[n] == number || from[n] == to[n]) vertex.odd = true;
+    }
+    const auto exchange = [&](std::size_t a, std::size_t b) {
+        std::swap(vertex.ring[a], vertex.ring[b]);
+        std::swap(from[a], from[b]);
+        std::swap(to[a], to[b]);
+    };
+    for (std::size_t n = 0; n < count; ++n) {  // the first is one to which none leads, if there is such a one
+        if (std::find(to.begin(), to.begin() + count, from[n]) == to.begin() + count) {
+            exchange(0, n);
+            vertex.open = true;
+            break;
+        }
+    }
+    for (std::size_t n = 1; n < count; ++n) {
+        const auto found = std::find(from.begin() + n, from.begin() + count, to[n - 1]);
+        if (found == from.begin() + count) {
+            vertex.odd = true;
+            return;
+        }
+        exchange(n, static_cast<std::size_t>(found - from.begin()));
+    }
+    if (count > 0 && !vertex.open && to[count - 1] != from[0]) vertex.odd = true;
+    if (count > 0 && vertex.open &&
+        std::find(from.begin(), from.begin() + count, to[count - 1]) != from.begin() + count)
+        vertex.odd = true;
+}
+
+template <class Real>
+void Mesh<Real>::add_planes() {
+    quadrics.resize(vertices.size());
+    for (const Triangle& triangle : triangles) {
+        for (std::size_t n = 0; n < 3; ++n) {
+            const auto corner = [&](std::size_t m) { return static_cast<std::size_t>(triangle.corners[(n + m) % 3]); };
+            quadrics[corner(0)].add(relative(places[corner(1)].at, places[corner(0)].at),
+                                    relative(places[corner(2)].at, places[corner(0)].at));
+        }
+    }
+}
+
+template <class Real>
+void Mesh<Real>::take(const MeshArrays<Real>& input, Simplified<Real>& out) const {
+    std::vector<std::int32_t> numbers(input.vertex_count, kNone);
+    std::int32_t next = 0;
+    for (std::size_t n = 0; n < input.vertex_count; ++n) {
+        if (vertices[static_cast<std::size_t>(renumbered_[n])].count == 0) continue;
+        numbers[static_cast<std::size_t>(renumbered_[n])] = next++;
+        for (std::size_t a = 0; a < 3; ++a) out.vertices.push_back(input.vertices[3 * n + a]);
+    }
+    std::vector<std::int32_t> by_original(input.triangle_count);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        by_original[static_cast<std::size_t>(original_triangles_[t])] = static_cast<std::int32_t>(t);
+    for (const std::int32_t t : by_original) {
+        const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
+        if (triangle.is_gone()) continue;
+        for (const std::int32_t corner : triangle.corners)
+            out.triangles.push_back(numbers[static_cast<std::size_t>(corner)]);
+    }
+}
+
+template class Mesh<float>;
+template class Mesh<double>;
+
+}  // namespace isocore::simplification

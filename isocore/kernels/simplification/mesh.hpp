@@ -1,0 +1,100 @@
+// mesh.hpp - The mesh while edges of it are contracted: vertices with the triangles around them, triangles with the
+// reference's vertices that they answer for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/array.hpp"
+#include "common/vectors.hpp"
+#include "simplification/cells.hpp"
+#include "simplification/quadric.hpp"
+#include "simplification/types.hpp"
+
+namespace isocore::simplification {
+
+inline constexpr std::int32_t kNone = -1;
+
+template <class Real>
+struct Place {
+    std::array<Real, 3> at;
+    std::int32_t next;  // the next witness of the same triangle, where this is one
+};
+
+struct Triangle {
+    std::array<std::int32_t, 3> corners;  // counter-clockwise; kNone once it is gone
+    std::int32_t witness;                 // its first witness, or kNone
+
+    bool is_gone() const { return corners[0] == kNone; }
+    // Which of the corners a vertex is.
+    std::size_t index_of(std::int32_t vertex) const {
+        return static_cast<std::size_t>(corners[1] == vertex) + 2 * static_cast<std::size_t>(corners[2] == vertex);
+    }
+    // The corner that follows on that of this index.
+    std::int32_t after(std::size_t index) const { return corners[index == 2 ? 0 : index + 1]; }
+};
+
+struct Vertex {
+    std::int32_t* ring = nullptr;  // its triangles, counter-clockwise; from border to border, where it lies there
+    std::uint64_t failed = 0;      // by place in the ring: the triangle's side that begins here was tried in vain
+    std::uint16_t count = 0;       // of triangles; 0 once it is gone
+    bool open = false;             // on the border
+    bool odd = false;              // its triangles are neither one ring nor one fan: it stays
+    bool movable = false;          // may be contracted onto a neighbour now
+
+    static constexpr std::size_t kMostTriangles = 62;  // around a vertex that may move, or to which another moves
+};
+
+// Room for rings: what is handed out stays until the room goes.
+class RingRoom {
+  public:
+    std::int32_t* take(std::size_t size);
+
+  private:
+    std::vector<std::unique_ptr<std::int32_t[]>> blocks_;
+    std::size_t left_ = 0;
+};
+
+template <class Real>
+class Mesh {
+  public:
+    // Vertices are renumbered by where they are, triangles by their first vertex, so that neighbours are close together
+    // in memory. Throws std::invalid_argument if a triangle names a vertex that is not there.
+    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch);
+
+    std::size_t vertex_count() const { return vertices.size(); }
+    // A place relative to another, stretched.
+    Spot relative(const std::array<Real, 3>& place, const std::array<Real, 3>& origin) const {
+        return {static_cast<float>(place[0] - origin[0]) * stretch_[0],
+                static_cast<float>(place[1] - origin[1]) * stretch_[1],
+                static_cast<float>(place[2] - origin[2]) * stretch_[2]};
+    }
+    const Spot& stretch() const { return stretch_; }
+
+    // What is left, in the order in which it came in.
+    void take(const MeshArrays<Real>& input, Simplified<Real>& out) const;
+
+    Array<Place<Real>> places;  // of the vertices, then of the reference's other vertices
+    std::vector<Vertex> vertices;
+    std::vector<Quadric> quadrics;
+    Array<Triangle> triangles;
+    Array<std::uint8_t> proved;    // by triangle: it is known to keep the bound backwards
+    Array<std::int32_t> original;  // the vertices' numbers in the input
+
+  private:
+    void number_vertices(const MeshArrays<Real>& input, const Cells& cells);
+    void number_triangles(const MeshArrays<Real>& input);
+    void find_rings();
+    void order_ring(std::int32_t vertex);
+    void add_planes();
+
+    Spot stretch_;
+    Array<std::int32_t> renumbered_;  // by number in the input
+    Array<std::int32_t> original_triangles_;
+    Array<std::int32_t> rings_;
+};
+
+}  // namespace isocore::simplification

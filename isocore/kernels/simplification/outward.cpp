@@ -1,0 +1,64 @@
+#include "simplification/outward.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/lanes.hpp"
+
+namespace isocore::simplification {
+
+template <class Real>
+void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
+    const auto& origin = mesh.places[static_cast<std::size_t>(ring.centre)].at;
+    numbers_.clear();
+    for (auto& axis : places_) axis.clear();
+    const auto add = [&](std::int32_t number) {
+        numbers_.push_back(number);
+        const Spot at = mesh.relative(mesh.places[static_cast<std::size_t>(number)].at, origin);
+        for (std::size_t a = 0; a < 3; ++a) places_[a].push_back(at[a]);
+    };
+    add(ring.centre);
+    for (std::size_t n = 0; n < ring.count; ++n) {
+        std::int32_t witness = mesh.triangles[static_cast<std::size_t>(ring.triangles[n])].witness;
+        for (; witness != kNone; witness = mesh.places[static_cast<std::size_t>(witness)].next) add(witness);
+    }
+    const std::size_t room = (numbers_.size() + kLanes - 1) / kLanes * kLanes;
+    for (auto& axis : places_) axis.resize(room, 0.0f);  // lanes past the end are as the centre, which is first
+    nearest_.resize(room);
+}
+
+bool Witnesses::are_near(const Facets& facets, float limit) {
+    const Floats most(limit * limit);
+    for (std::size_t n = 0; n < places_[0].size(); n += kLanes) {
+        const Vector<Floats> points{Floats(places_[0].data() + n), Floats(places_[1].data() + n),
+                                    Floats(places_[2].data() + n)};
+        Floats best(std::numeric_limits<float>::infinity()), which(0.0f);
+        for (std::size_t face = 0; face < facets.size(); ++face) {
+            const Floats squared = facets.from_points(face, points);
+            which = choose(squared < best, Floats(static_cast<float>(face)), which);
+            best = least(best, squared);
+        }
+        if ((most < best).any()) return false;
+        which.store(nearest_.data() + n);
+    }
+    return true;
+}
+
+template <class Real>
+void Witnesses::hand_over(Mesh<Real>& mesh, const Star& star) const {
+    for (std::size_t n = 0; n < star.count; ++n)
+        mesh.triangles[static_cast<std::size_t>(star.triangles[n])].witness = kNone;
+    for (std::size_t n = numbers_.size(); n-- > 0;) {
+        const std::size_t face = static_cast<std::size_t>(nearest_[n]) + 1;
+        Triangle& triangle = mesh.triangles[static_cast<std::size_t>(star.triangles[face])];
+        mesh.places[static_cast<std::size_t>(numbers_[n])].next = triangle.witness;
+        triangle.witness = numbers_[n];
+    }
+}
+
+template void Witnesses::gather(const Mesh<float>&, const Ring&);
+template void Witnesses::gather(const Mesh<double>&, const Ring&);
+template void Witnesses::hand_over(Mesh<float>&, const Star&) const;
+template void Witnesses::hand_over(Mesh<double>&, const Star&) const;
+
+}  // namespace isocore::simplification

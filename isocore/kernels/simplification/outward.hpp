@@ -1,0 +1,42 @@
+// outward.hpp - The bound outward: how far the reference's vertices lie from the surface. Follows R. Klein, G. Liebich,
+// W. Strasser, "Mesh Reduction with Error Control", IEEE Visualization 1996: each of them is kept with the triangle
+// that it is nearest to, as its witness, and moves on when that is replaced.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/facets.hpp"
+#include "simplification/cells.hpp"
+#include "simplification/mesh.hpp"
+#include "simplification/star.hpp"
+#include "simplification/triangle_grid.hpp"
+
+namespace isocore::simplification {
+
+// The witnesses of a star.
+class Witnesses {
+  public:
+    // Takes those of the star's triangles, and the star's centre, which becomes one.
+    template <class Real>
+    void gather(const Mesh<Real>& mesh, const Ring& ring);
+    // Does each lie within the limit of one of these facets? Keeps in mind of which it is nearest to.
+    bool are_near(const Facets& facets, float limit);
+    // Hands each to the triangle that face n - 1 of the star is drawn as, once are_near() has held.
+    template <class Real>
+    void hand_over(Mesh<Real>& mesh, const Star& star) const;
+
+  private:
+    std::vector<std::int32_t> numbers_;
+    Vector<std::vector<float>> places_;
+    std::vector<float> nearest_;
+};
+
+// Appends the reference's vertices that are none of the mesh's to mesh.places, and makes each the witness of the
+// nearest triangle within the limit, or of the nearest in reach.
+template <class Real>
+void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const TriangleGrid& grid,
+                    float limit, int threads, Mesh<Real>& mesh);
+
+}  // namespace isocore::simplification

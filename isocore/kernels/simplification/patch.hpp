@@ -1,0 +1,55 @@
+// patch.hpp - Some of the reference's triangles, copied close together, coordinate by coordinate. Places are relative
+// to a vertex of the mesh, and stretched.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "common/facets.hpp"
+#include "common/lanes.hpp"
+#include "simplification/reference.hpp"
+
+namespace isocore::simplification {
+
+struct Box {
+    Spot low, high;
+
+    static Box around(const std::array<Spot, 3>& triangle, float margin);
+    void add(const Box& other);
+};
+
+class Patch {
+  public:
+    std::size_t size() const { return size_; }
+    // Takes all triangles in cells that touch a box around `origin`.
+    template <class Real>
+    void gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
+                const Box& box);
+    // Takes those of another patch whose boxes touch this one.
+    void select(const Patch& from, const Box& box);
+
+    // Corner `corner` of eight triangles from `first` on. Lanes past the last triangle hold corners far away.
+    Vector<Floats> in_lanes(std::size_t corner, std::size_t first) const {
+        const auto lanes = [&](std::size_t a) { return Floats(columns_[3 * corner + a].data() + first); };
+        return {lanes(0), lanes(1), lanes(2)};
+    }
+    Spot corner(std::size_t triangle, std::size_t n) const {
+        return {columns_[3 * n][triangle], columns_[3 * n + 1][triangle], columns_[3 * n + 2][triangle]};
+    }
+    // Of eight triangles from `first` on: a bit for each that may have a side on the reference's border.
+    unsigned at_border(std::size_t first) const {
+        return (Floats(0.0f) < Floats(columns_[kBorder].data() + first)).bits();
+    }
+
+  private:
+    static constexpr std::size_t kBorder = 9, kColumns = 10;
+
+    void make_room(std::size_t size);
+    void end();
+
+    std::size_t size_ = 0;
+    std::array<std::vector<float>, kColumns> columns_;
+};
+
+}  // namespace isocore::simplification

@@ -1,0 +1,96 @@
+#include "simplification/reference.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace isocore::simplification {
+
+template <class Real>
+Reference<Real>::Reference(const MeshArrays<Real>& mesh, const Cells& cells) : mesh_(mesh), cells_(cells) {
+    const std::size_t words = cells.count() / 64 + 2;
+    occupied_.assign(words, 0);
+    bool in_order = true;
+    std::size_t entries = 0, last = 0;
+    each_entry([&](std::int32_t, std::size_t cell) {
+        occupied_[cell / 64] |= std::uint64_t{1} << cell % 64;
+        in_order = in_order && cell >= last;
+        last = cell;
+        ++entries;
+    });
+    ranks_.resize(words);
+    std::uint32_t rank = 0;
+    for (std::size_t w = 0; w < words; ++w) {
+        ranks_[w] = rank;
+        rank += static_cast<std::uint32_t>(std::popcount(occupied_[w]));
+    }
+    const auto rank_of = [&](std::size_t cell) {
+        const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
+        return ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below));
+    };
+    starts_.assign(rank + 1, 0);
+    each_entry([&](std::int32_t, std::size_t cell) { ++starts_[rank_of(cell) + 1]; });
+    for (std::size_t n = 0; n < rank; ++n) starts_[n + 1] += starts_[n];
+    if (!in_order || entries != mesh.triangle_count) {
+        entries_.resize(entries);
+        Array<std::uint32_t> next(starts_);
+        each_entry([&](std::int32_t t, std::size_t cell) { entries_[next[rank_of(cell)]++] = t; });
+    }
+    find_border();
+}
+
+// visit(triangle, cell) of each cell that a triangle's box touches; a box that ends where a cell begins does not touch
+// that. A triangle of marching cubes has one cell.
+template <class Real>
+template <class Visit>
+void Reference<Real>::each_entry(const Visit& visit) const {
+    for (std::size_t t = 0; t < mesh_.triangle_count; ++t) {
+        Cell low, high;
+        for (std::size_t a = 0; a < 3; ++a) {
+            std::array<double, 3> at;
+            for (std::size_t n = 0; n < 3; ++n)
+                at[n] =
+                    static_cast<double>(mesh_.vertices[3 * static_cast<std::size_t>(mesh_.triangles[3 * t + n]) + a]);
+            const double least = cells_.in_cells(std::min({at[0], at[1], at[2]}), a);
+            const double most = cells_.in_cells(std::max({at[0], at[1], at[2]}), a);
+            low[a] = cells_.clamped(least, a);
+            high[a] = cells_.clamped(most, a);
+            if (high[a] > low[a] && static_cast<double>(high[a]) == most) --high[a];
+        }
+        for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                for (std::int32_t i = low[0]; i <= high[0]; ++i) visit(static_cast<std::int32_t>(t), number({i, j, k}));
+            }
+        }
+    }
+}
+
+template <class Real>
+std::uint32_t Reference<Real>::first_of(std::size_t cell) const {
+    const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
+    return starts_[ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below))];
+}
+
+// Around a vertex inside the surface, each neighbour is the end of one opposite side and the start of another; at the
+// border, and where more than two triangles share a side, some are not. Numbers are scattered before they are added up,
+// so that no sum is 0 by chance.
+template <class Real>
+void Reference<Real>::find_border() {
+    const auto scattered = [](std::int32_t vertex) {
+        auto n = static_cast<std::uint32_t>(vertex) * 0x9e3779b1u;
+        n = (n ^ n >> 15) * 0x85ebca77u;
+        return n ^ n >> 13;
+    };
+    std::vector<std::uint32_t> sums(mesh_.vertex_count);
+    for (std::size_t t = 0; t < mesh_.triangle_count; ++t) {
+        const std::int32_t* c = mesh_.triangles + 3 * t;
+        for (std::size_t n = 0; n < 3; ++n)
+            sums[static_cast<std::size_t>(c[n])] += scattered(c[(n + 1) % 3]) - scattered(c[(n + 2) % 3]);
+    }
+    at_border_.resize(mesh_.vertex_count);
+    std::transform(sums.begin(), sums.end(), at_border_.begin(), [](std::uint32_t sum) { return sum != 0; });
+}
+
+template class Reference<float>;
+template class Reference<double>;
+
+}  // namespace isocore::simplification

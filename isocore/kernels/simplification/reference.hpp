@@ -1,0 +1,71 @@
+// reference.hpp - The reference surface, found by cells. Triangles of one cell follow each other, and so do cells of
+// one row, so that a piece of a row is one run of triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/array.hpp"
+#include "simplification/cells.hpp"
+#include "simplification/mesh.hpp"
+#include "simplification/types.hpp"
+
+namespace isocore::simplification {
+
+template <class Real>
+class Reference {
+  public:
+    Reference(const MeshArrays<Real>& mesh, const Cells& cells);
+
+    const MeshArrays<Real>& mesh() const { return mesh_; }
+    const Cells& cells() const { return cells_; }
+
+    // visit(triangle) of each triangle in the cells from `low` to `high`, both included. A triangle that lies in
+    // several cells may be visited several times.
+    template <class Visit>
+    void each_between(const Cell& low, const Cell& high, const Visit& visit) const {
+        for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                const std::uint32_t end = first_of(number({high[0], j, k}) + 1);
+                for (std::uint32_t n = first_of(number({low[0], j, k})); n < end; ++n)
+                    visit(entries_.empty() ? static_cast<std::int32_t>(n) : entries_[n]);
+            }
+        }
+    }
+
+    std::array<Real, 3> corner(std::int32_t triangle, std::size_t n) const {
+        const Real* at = mesh_.vertices + 3 * vertex(triangle, n);
+        return {at[0], at[1], at[2]};
+    }
+    // Is a side of the triangle on the surface's border, or could it be?
+    bool may_be_at_border(std::int32_t triangle) const {
+        return at_border_[vertex(triangle, 0)] + at_border_[vertex(triangle, 1)] + at_border_[vertex(triangle, 2)] > 1;
+    }
+
+  private:
+    std::size_t vertex(std::int32_t triangle, std::size_t n) const {
+        return static_cast<std::size_t>(mesh_.triangles[3 * static_cast<std::size_t>(triangle) + n]);
+    }
+    std::size_t number(const Cell& cell) const {
+        return static_cast<std::size_t>(cell[0]) +
+               cells_.dims[0] *
+                   (static_cast<std::size_t>(cell[1]) + cells_.dims[1] * static_cast<std::size_t>(cell[2]));
+    }
+    // The first entry of this cell or of a later one.
+    std::uint32_t first_of(std::size_t cell) const;
+    template <class Visit>
+    void each_entry(const Visit& visit) const;
+    void find_border();
+
+    MeshArrays<Real> mesh_;
+    Cells cells_;
+    Array<std::uint64_t> occupied_;        // a bit for each cell
+    Array<std::uint32_t> ranks_;           // of each word: how many bits are set before it
+    Array<std::uint32_t> starts_;          // of each occupied cell: its first entry
+    Array<std::int32_t> entries_;          // triangles; empty where entry n is triangle n
+    std::vector<std::uint8_t> at_border_;  // by vertex
+};
+
+}  // namespace isocore::simplification

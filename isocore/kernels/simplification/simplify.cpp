@@ -1,0 +1,152 @@
+// simplify.cpp - Half-edge contraction with a bound both ways. README.md in this folder names the papers.
+#include "simplification/simplify.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "simplification/contraction.hpp"
+#include "simplification/sweeps.hpp"
+
+namespace isocore::simplification {
+namespace {
+
+constexpr std::int32_t kBoxCells = 64;
+constexpr int kPhases = 4;
+// How far the boxes of each phase are shifted along each axis, in quarters of a box.
+constexpr std::array<std::array<std::int32_t, 3>, kPhases> kShifts{std::array{0, 0, 0}, std::array{2, 2, 2},
+                                                                   std::array{1, 3, 1}, std::array{3, 1, 3}};
+
+template <class Real>
+class Simplification {
+  public:
+    Simplification(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options)
+        : input_(input),
+          options_(options),
+          limit_(static_cast<float>(options.max_error)),
+          cells_(Cells::around(reference, options.cell)),
+          reference_(reference, cells_),
+          mesh_(input, cells_, options.stretch),
+          grid_(cells_),
+          costs_(mesh_.vertex_count()) {
+        for (int n = 0; n < std::max(options.threads, 1); ++n)
+            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, reference_, grid_, limit_));
+        enter_triangles();
+        find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
+        if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), std::uint8_t{1});
+    }
+
+    // Contracts edges that lie in a box with all that they change, each box for itself.
+    void run(int phase) {
+        const std::vector<std::vector<std::int32_t>> boxes = find_boxes(kShifts[static_cast<std::size_t>(phase)]);
+        std::atomic<std::size_t> next{0};
+        parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
+            for (std::size_t box = next++; box < boxes.size(); box = next++)
+                sweep(boxes[box], mesh_, *workers_[worker], costs_, input_.triangle_count, options_.most_triangles);
+        });
+    }
+
+    Simplified<Real> take() {
+        Simplified<Real> out;
+        mesh_.take(input_, out);
+        for (const auto& worker : workers_) {
+            out.facts.collapses += worker->collapses;
+            for (std::size_t n = 0; n < kRules; ++n) out.facts.refused[n] += worker->refused[n];
+        }
+        measure(out.facts);
+        return out;
+    }
+
+  private:
+    void enter_triangles() {
+        TriangleGrid::Spare spare;
+        std::vector<std::int32_t> cubes;
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            cubes.clear();
+            grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
+            grid_.enter(static_cast<std::int32_t>(t), cubes.data(), cubes.size(), spare);
+        }
+    }
+
+    // The vertices that may move, by the box that they lie in with all their neighbours.
+    std::vector<std::vector<std::int32_t>> find_boxes(const std::array<std::int32_t, 3>& shift) {
+        std::array<std::size_t, 3> dims;
+        for (std::size_t a = 0; a < 3; ++a) dims[a] = cells_.dims[a] / kBoxCells + 2;
+        std::vector<std::vector<std::int32_t>> boxes(dims[0] * dims[1] * dims[2]);
+        std::vector<std::uint32_t> box_of(mesh_.vertex_count());
+        for (std::size_t v = 0; v < box_of.size(); ++v) {
+            const Cell cell = cells_.at(mesh_.places[v].at.data());
+            const auto box = [&](std::size_t a) {
+                return static_cast<std::size_t>((cell[a] + shift[a] * kBoxCells / 4) / kBoxCells);
+            };
+            box_of[v] = static_cast<std::uint32_t>(box(0) + dims[0] * (box(1) + dims[1] * box(2)));
+        }
+        for (std::size_t v = 0; v < box_of.size(); ++v) {
+            Vertex& vertex = mesh_.vertices[v];
+            vertex.movable =
+                vertex.count > 0 && !vertex.open && !vertex.odd && has_ring_in_box(vertex, box_of[v], box_of);
+            if (vertex.movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
+        }
+        std::erase_if(boxes, [](const auto& box) { return box.empty(); });
+        return boxes;
+    }
+
+    bool has_ring_in_box(const Vertex& vertex, std::uint32_t box, const std::vector<std::uint32_t>& box_of) const {
+        return std::all_of(vertex.ring, vertex.ring + vertex.count, [&](std::int32_t t) {
+            const auto& corners = mesh_.triangles[static_cast<std::size_t>(t)].corners;
+            return std::all_of(corners.begin(), corners.end(),
+                               [&](std::int32_t corner) { return box_of[static_cast<std::size_t>(corner)] == box; });
+        });
+    }
+
+    void measure(Facts& facts) {
+        Facets facets;
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const Triangle& triangle = mesh_.triangles[t];
+            if (triangle.is_gone()) continue;
+            if (!mesh_.proved[t])
+                facts.unproved += !workers_[0]->backward().is_near(static_cast<std::int32_t>(t), limit_ - 1e-5f);
+            const auto place = [&](std::size_t n) {
+                return mesh_.places[static_cast<std::size_t>(triangle.corners[n])].at;
+            };
+            facets.clear();
+            facets.add({0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0)));
+            facets.find_frames();
+            for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.places[static_cast<std::size_t>(w)].next) {
+                const Spot at = mesh_.relative(mesh_.places[static_cast<std::size_t>(w)].at, place(0));
+                const auto squared = static_cast<double>(facets.from_points(0, {at[0], at[1], at[2]}).first());
+                facts.max = std::max(facts.max, std::sqrt(squared));
+                facts.sum += std::sqrt(squared);
+                facts.squares += squared;
+            }
+        }
+    }
+
+    MeshArrays<Real> input_;
+    const Options& options_;
+    float limit_;
+    Cells cells_;
+    Reference<Real> reference_;
+    Mesh<Real> mesh_;
+    TriangleGrid grid_;
+    std::vector<float> costs_;
+    std::vector<std::unique_ptr<Contraction<Real>>> workers_;
+};
+
+}  // namespace
+
+template <class Real>
+Simplified<Real> simplify(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
+    if (input.triangle_count == 0) return {};
+    Simplification<Real> simplification(input, reference, options);
+    for (int phase = 0; phase < kPhases; ++phase) simplification.run(phase);
+    return simplification.take();
+}
+
+template Simplified<float> simplify(const MeshArrays<float>&, const MeshArrays<float>&, const Options&);
+template Simplified<double> simplify(const MeshArrays<double>&, const MeshArrays<double>&, const Options&);
+
+}  // namespace isocore::simplification

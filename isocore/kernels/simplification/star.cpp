@@ -1,0 +1,79 @@
+#include "simplification/star.hpp"
+
+#include <algorithm>
+
+namespace isocore::simplification {
+
+template <class Real>
+void Ring::gather(const Mesh<Real>& mesh, std::int32_t vertex) {
+    const Vertex& middle = mesh.vertices[static_cast<std::size_t>(vertex)];
+    const auto& origin = mesh.places[static_cast<std::size_t>(vertex)].at;
+    centre = vertex;
+    count = middle.count;
+    for (std::size_t n = 0; n < count; ++n) {
+        triangles[n] = middle.ring[n];
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles[n])];
+        neighbours[n] = triangle.after(triangle.index_of(vertex));
+        const Spot at = mesh.relative(mesh.places[static_cast<std::size_t>(neighbours[n])].at, origin);
+        for (std::size_t a = 0; a < 3; ++a) places[a][n] = at[a];
+    }
+    for (std::size_t a = 0; a < 3; ++a) Floats(0.0f).store(places[a].data() + count);
+}
+
+template void Ring::gather(const Mesh<float>&, std::int32_t);
+template void Ring::gather(const Mesh<double>&, std::int32_t);
+
+void Star::turn(const Ring& ring, std::size_t target) {
+    centre = ring.centre;
+    count = ring.count;
+    const auto rotate = [&](const auto& from, auto& to) {
+        std::copy(from.begin() + target, from.begin() + count, to.begin());
+        std::copy(from.begin(), from.begin() + target, to.begin() + (count - target));
+    };
+    rotate(ring.neighbours, neighbours);
+    rotate(ring.triangles, triangles);
+    for (std::size_t a = 0; a < 3; ++a) {
+        rotate(ring.places[a], places[a]);
+        Floats(places[a][0]).store(places[a].data() + count);  // so that lanes past the end hold no face of any kind
+        Floats(places[a][0]).store(places[a].data() + count + kLanes);
+    }
+}
+
+bool Star::has_good_shapes() const {
+    constexpr float kCosine = 0.34f;  // of 70 degrees
+    constexpr float kHeight = 0.02f;  // of the longest side
+    const Spot target = place(0);
+    const Vector<Floats> to{target[0], target[1], target[2]};
+    for (std::size_t n = 1; n < count - 1; n += kLanes) {
+        const auto one = in_lanes(n), other = in_lanes(n + 1);
+        const auto from_one = minus(one, to), from_other = minus(other, to), side = minus(other, one);
+        const auto before = cross(one, other), after = cross(from_one, from_other);
+        const Floats cosine = dot(before, after), squared = dot(after, after);
+        const Floats longest =
+            greatest(dot(side, side), greatest(dot(from_one, from_one), dot(from_other, from_other)));
+        const auto good = (Floats(0.0f) < cosine) &
+                          (Floats(kCosine * kCosine) * dot(before, before) * squared <= cosine * cosine) &
+                          (Floats(kHeight * kHeight) * longest * longest <= squared);
+        const std::size_t faces = std::min(kLanes, count - 1 - n);
+        const unsigned wanted = (1u << faces) - 1;
+        if ((good.bits() & wanted) != wanted) return false;
+    }
+    return true;
+}
+
+void Star::draw(Facets& facets) const {
+    facets.clear();
+    for (std::size_t n = 1; n + 1 < count; ++n) facets.add(place(0), place(n), place(n + 1));
+    facets.find_frames();
+}
+
+float Star::reach() const {
+    Floats most(0.0f);
+    for (std::size_t n = 0; n < count; n += kLanes) {
+        const auto at = in_lanes(n);
+        for (std::size_t a = 0; a < 3; ++a) most = greatest(most, greatest(at[a], Floats(0.0f) - at[a]));
+    }
+    return most.greatest_lane();
+}
+
+}  // namespace isocore::simplification

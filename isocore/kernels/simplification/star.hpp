@@ -1,0 +1,50 @@
+// star.hpp - A vertex and the ring of its neighbours, copied close together, and the faces that are drawn instead once
+// it is contracted onto one of them. Places are relative to the vertex, and stretched.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "common/facets.hpp"
+#include "common/lanes.hpp"
+#include "simplification/mesh.hpp"
+
+namespace isocore::simplification {
+
+// A vertex inside the surface. Triangle n lies between neighbours n and n + 1, the last between it and neighbour 0.
+struct Ring {
+    static constexpr std::size_t kRoom = Vertex::kMostTriangles + 2 * kLanes;
+
+    std::int32_t centre = kNone;
+    std::size_t count = 0;
+    std::array<std::int32_t, kRoom> neighbours, triangles;
+    Vector<std::array<float, kRoom>> places;
+
+    template <class Real>
+    void gather(const Mesh<Real>& mesh, std::int32_t vertex);
+
+    Spot place(std::size_t n) const { return {places[0][n], places[1][n], places[2][n]}; }
+    Vector<Floats> in_lanes(std::size_t n) const {
+        return {Floats(places[0].data() + n), Floats(places[1].data() + n), Floats(places[2].data() + n)};
+    }
+};
+
+// The ring, turned so that neighbour 0 is the target. Triangle 0 and the last one vanish; face n, from 1 to count - 2,
+// is drawn instead of triangle n: target, neighbour n, neighbour n + 1.
+class Star : public Ring {
+  public:
+    void turn(const Ring& ring, std::size_t target);
+
+    std::int32_t target() const { return neighbours[0]; }
+    std::size_t face_count() const { return count - 2; }
+
+    // No face is turned far from the triangle it replaces, and none is a sliver.
+    bool has_good_shapes() const;
+    // The faces as facets: face n has number n - 1.
+    void draw(Facets& facets) const;
+    // How far the farthest neighbour is away, at most.
+    float reach() const;
+};
+
+}  // namespace isocore::simplification

@@ -1,0 +1,117 @@
+#include "simplification/sweeps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isocore::simplification {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+template <class Real>
+class Sweep {
+  public:
+    Sweep(Mesh<Real>& mesh, Contraction<Real>& contraction, std::vector<float>& costs)
+        : mesh_(mesh), contraction_(contraction), costs_(costs) {}
+
+    // The least of the costs of edges from the ring's centre that did not fail yet, and which; infinity if there is
+    // none.
+    float find_cheapest() {
+        const std::uint64_t failed = mesh_.vertices[static_cast<std::size_t>(ring_.centre)].failed;
+        float best = kInfinity;
+        for (std::size_t n = 0; n < ring_.count; ++n) {
+            if (failed >> n & 1 || !(each_[n] < best)) continue;
+            best = each_[n];
+            cheapest_ = n;
+        }
+        return best;
+    }
+
+    void look_at(std::int32_t vertex) {
+        ring_.gather(mesh_, vertex);
+        const Quadric& quadric = mesh_.quadrics[static_cast<std::size_t>(vertex)];
+        for (std::size_t n = 0; n < ring_.count; n += kLanes) quadric.at(ring_.in_lanes(n)).store(each_.data() + n);
+        for (std::size_t n = 0; n < ring_.count; ++n) {
+            const auto to = static_cast<std::size_t>(ring_.neighbours[n]);
+            each_[n] = std::max(0.0f, each_[n]) + mesh_.quadrics[to].constant();
+        }
+    }
+
+    // Contracts an edge from this vertex that costs no more than the limit, if one can be. Else its cost is then that
+    // of the cheapest edge not tried yet.
+    bool try_vertex(std::int32_t number, float limit) {
+        look_at(number);
+        Vertex& vertex = mesh_.vertices[static_cast<std::size_t>(number)];
+        float cost = find_cheapest();
+        for (; cost <= limit && cost < kInfinity; cost = find_cheapest()) {
+            if (contraction_.contract(ring_, cheapest_)) {
+                wake_neighbours();
+                return true;
+            }
+            vertex.failed |= std::uint64_t{1} << cheapest_;
+        }
+        costs_[static_cast<std::size_t>(number)] = cost;
+        return false;
+    }
+
+  private:
+    void wake_neighbours() {
+        const Star& star = contraction_.star();
+        costs_[static_cast<std::size_t>(star.centre)] = kInfinity;
+        const auto target = static_cast<std::size_t>(star.target());
+        if (mesh_.vertices[target].movable) costs_[target] = 0;
+        for (std::size_t n = 1; n < star.count; ++n) {
+            const auto other = static_cast<std::size_t>(star.neighbours[n]);
+            if (!mesh_.vertices[other].movable) continue;
+            const Spot way = mesh_.relative(mesh_.places[target].at, mesh_.places[other].at);
+            const float cost = std::max(0.0f, mesh_.quadrics[other].at(way)) + mesh_.quadrics[target].constant();
+            costs_[other] = std::min(costs_[other], cost);
+        }
+    }
+
+    Mesh<Real>& mesh_;
+    Contraction<Real>& contraction_;
+    std::vector<float>& costs_;
+    Ring ring_;
+    std::array<float, Ring::kRoom> each_;
+    std::size_t cheapest_ = 0;
+};
+
+}  // namespace
+
+template <class Real>
+void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contraction<Real>& contraction,
+           std::vector<float>& costs, std::size_t triangles, std::size_t most) {
+    Sweep<Real> sweep(mesh, contraction, costs);
+    for (const std::int32_t v : vertices) {
+        sweep.look_at(v);
+        costs[static_cast<std::size_t>(v)] = sweep.find_cheapest();
+    }
+    constexpr float kFirst = 1e-6f;
+    while (triangles > most) {
+        float cheapest = kInfinity;
+        for (const std::int32_t v : vertices) cheapest = std::min(cheapest, costs[static_cast<std::size_t>(v)]);
+        if (cheapest == kInfinity) return;
+        int exponent = 0;
+        std::frexp(std::max(cheapest, kFirst), &exponent);
+        const float limit = std::ldexp(1.0f, exponent);  // the next power of two above
+        bool is_done = false;
+        while (!is_done && triangles > most) {
+            is_done = true;
+            for (const std::int32_t v : vertices) {
+                if (costs[static_cast<std::size_t>(v)] > limit) continue;
+                if (sweep.try_vertex(v, limit)) triangles -= 2;
+                is_done = false;
+                if (triangles <= most) break;
+            }
+        }
+    }
+}
+
+template void sweep(const std::vector<std::int32_t>&, Mesh<float>&, Contraction<float>&, std::vector<float>&,
+                    std::size_t, std::size_t);
+template void sweep(const std::vector<std::int32_t>&, Mesh<double>&, Contraction<double>&, std::vector<float>&,
+                    std::size_t, std::size_t);
+
+}  // namespace isocore::simplification

@@ -1,0 +1,96 @@
+#include "simplification/triangle_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace isocore::simplification {
+
+TriangleGrid::TriangleGrid(const Cells& cells) : cells_(cells) {
+    for (std::size_t a = 0; a < 3; ++a) dims_[a] = ((cells.dims[a] - 1) >> kBits) + 1;
+    first_.resize(dims_[0] * dims_[1] * dims_[2]);
+    std::fill(first_.begin(), first_.end(), kNone);
+    blocks_.reserve(kMostBlocks);  // so that it never moves while others read it
+}
+
+template <class Real>
+void TriangleGrid::cubes_of(const std::array<const std::array<Real, 3>*, 3>& corners,
+                            std::vector<std::int32_t>& out) const {
+    std::array<std::array<float, 3>, 3> at;  // corners, in cubes from the low one
+    Cell low{}, high{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        std::array<double, 3> in_cells;
+        for (std::size_t n = 0; n < 3; ++n) in_cells[n] = cells_.in_cells(static_cast<double>((*corners[n])[a]), a);
+        const auto cube = [&](double place) { return cells_.clamped(place, a) >> kBits; };
+        low[a] = cube(std::min({in_cells[0], in_cells[1], in_cells[2]}));
+        high[a] = cube(std::max({in_cells[0], in_cells[1], in_cells[2]}));
+        for (std::size_t n = 0; n < 3; ++n)
+            at[n][a] = static_cast<float>(in_cells[n] / (1 << kBits) - static_cast<double>(low[a]));
+    }
+    if (low == high) return out.push_back(number(low));
+    const Spot normal = cross(minus(at[1], at[0]), minus(at[2], at[0]));
+    constexpr float kHalf = 0.5f + 1e-3f;  // of a cube, with some room for rounding
+    const float reach = kHalf * (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]));
+    for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+        const float z = normal[2] * (static_cast<float>(k - low[2]) + 0.5f - at[0][2]);
+        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+            const float yz = z + normal[1] * (static_cast<float>(j - low[1]) + 0.5f - at[0][1]);
+            for (std::int32_t i = low[0]; i <= high[0]; ++i) {
+                const float xyz = yz + normal[0] * (static_cast<float>(i - low[0]) + 0.5f - at[0][0]);
+                if (!(std::abs(xyz) > reach)) out.push_back(number({i, j, k}));
+            }
+        }
+    }
+}
+
+template <class Real>
+void TriangleGrid::cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::vector<std::int32_t>& out) const {
+    const auto& c = mesh.triangles[static_cast<std::size_t>(triangle)].corners;
+    const auto place = [&](std::size_t n) { return &mesh.places[static_cast<std::size_t>(c[n])].at; };
+    cubes_of<Real>({place(0), place(1), place(2)}, out);
+}
+
+void TriangleGrid::add_block(Spare& spare) {
+    const std::lock_guard<std::mutex> lock(guard_);
+    if (blocks_.size() == kMostBlocks) throw std::length_error("simplification: too many triangles in too many cells");
+    const auto start = static_cast<std::int32_t>(blocks_.size()) << kBlockBits;
+    constexpr std::int32_t kEntries = 1 << kBlockBits;
+    std::unique_ptr<Entry[]> block(new Entry[kEntries]);
+    for (std::int32_t n = 0; n < kEntries; ++n) block[static_cast<std::size_t>(n)] = {kNone, start + n + 1};
+    block[kEntries - 1].next = kNone;
+    blocks_.push_back(std::move(block));
+    spare.first = start;
+}
+
+void TriangleGrid::enter(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
+    for (std::size_t n = 0; n < count; ++n) {
+        if (spare.first == kNone) add_block(spare);
+        const std::int32_t taken = spare.first;
+        Entry& own = entry(taken);
+        spare.first = own.next;
+        std::int32_t& first = first_[static_cast<std::size_t>(cubes[n])];
+        own = {triangle, first};
+        first = taken;
+    }
+}
+
+void TriangleGrid::remove(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
+    for (std::size_t n = 0; n < count; ++n) {
+        std::int32_t* link = &first_[static_cast<std::size_t>(cubes[n])];
+        while (*link != kNone && entry(*link).triangle != triangle) link = &entry(*link).next;
+        if (*link == kNone) continue;
+        const std::int32_t found = *link;
+        *link = entry(found).next;
+        entry(found).next = spare.first;
+        spare.first = found;
+    }
+}
+
+template void TriangleGrid::cubes_of(const Mesh<float>&, std::int32_t, std::vector<std::int32_t>&) const;
+template void TriangleGrid::cubes_of(const Mesh<double>&, std::int32_t, std::vector<std::int32_t>&) const;
+template void TriangleGrid::cubes_of(const std::array<const std::array<float, 3>*, 3>&,
+                                     std::vector<std::int32_t>&) const;
+template void TriangleGrid::cubes_of(const std::array<const std::array<double, 3>*, 3>&,
+                                     std::vector<std::int32_t>&) const;
+
+}  // namespace isocore::simplification

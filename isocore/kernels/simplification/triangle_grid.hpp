@@ -1,0 +1,72 @@
+// triangle_grid.hpp - Which triangles of the mesh touch a cube of two cells by two by two: a list for each cube, kept
+// up to date while triangles change. Threads may change the lists of different cubes at the same time.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "common/array.hpp"
+#include "simplification/cells.hpp"
+#include "simplification/mesh.hpp"
+
+namespace isocore::simplification {
+
+class TriangleGrid {
+  public:
+    static constexpr int kBits = 1;  // a cube is this power of two of cells wide
+
+    // A thread's own entries: those it may use next.
+    struct Spare {
+        std::int32_t first = kNone;
+    };
+
+    explicit TriangleGrid(const Cells& cells);
+
+    // Appends the cubes that a triangle touches, and perhaps a few that it nearly does. The same for the same places.
+    template <class Real>
+    void cubes_of(const std::array<const std::array<Real, 3>*, 3>& corners, std::vector<std::int32_t>& out) const;
+    template <class Real>
+    void cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::vector<std::int32_t>& out) const;
+
+    void enter(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare);
+    void remove(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare);
+
+    // visit(triangle) of each triangle of a cube.
+    template <class Visit>
+    void each_in(std::int32_t cube, const Visit& visit) const {
+        for (std::int32_t e = first_[static_cast<std::size_t>(cube)]; e != kNone; e = entry(e).next)
+            visit(entry(e).triangle);
+    }
+    // The cube of a cell, and the number of a cube.
+    std::int32_t number(const Cell& cube) const {
+        return static_cast<std::int32_t>(
+            static_cast<std::size_t>(cube[0]) +
+            dims_[0] * (static_cast<std::size_t>(cube[1]) + dims_[1] * static_cast<std::size_t>(cube[2])));
+    }
+    const Cells& cells() const { return cells_; }
+
+  private:
+    struct Entry {
+        std::int32_t triangle, next;
+    };
+    static constexpr int kBlockBits = 14;
+    static constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
+
+    Entry& entry(std::int32_t number) const {
+        return blocks_[static_cast<std::size_t>(number >> kBlockBits)][number & ((1 << kBlockBits) - 1)];
+    }
+    void add_block(Spare& spare);
+
+    Cells cells_;
+    std::array<std::size_t, 3> dims_;  // in cubes
+    Array<std::int32_t> first_;        // entry of each cube
+    std::mutex guard_;                 // of blocks_
+    std::vector<std::unique_ptr<Entry[]>> blocks_;
+};
+
+}  // namespace isocore::simplification

@@ -1,0 +1,54 @@
+// types.hpp - What simplification is asked for (Options), and what it gives (Simplified).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "common/array.hpp"
+
+namespace isocore::simplification {
+
+struct Options {
+    // How far the reference's vertices may lie from the surface, and the surface's points from the reference. The unit
+    // is that of stretched coordinates.
+    double max_error = 0;
+    std::array<double, 3> stretch{1, 1, 1};  // from coordinates to the unit in which distances are measured
+    // The side of a cell, in coordinates: about as long as the sides of the reference's triangles. Stretched cells are
+    // about 1 wide.
+    double cell = 1;
+    std::size_t most_triangles = 0;  // stop when there are no more than these
+    int threads = 1;
+};
+
+// Why an edge was not contracted; README.md has the rules.
+enum class Rule : std::uint8_t { link, shape, outward, back, crossing };
+inline constexpr std::size_t kRules = 5;
+
+struct Facts {
+    std::size_t collapses = 0;
+    std::array<std::size_t, kRules> refused{};  // by Rule
+    std::size_t unproved = 0;                   // triangles of which it is not known that they keep the bound
+    // From the reference's vertices to the surface, stretched: the largest distance, the sum, that of the squares.
+    double max = 0, sum = 0, squares = 0;
+    double back_max = 0;  // no point of the surface lies further from the reference
+};
+
+template <class Real>
+struct Simplified {
+    Array<Real> vertices;           // x, y, z of each
+    Array<std::int32_t> triangles;  // three vertex numbers each
+    Facts facts;
+};
+
+// Vertices, x, y, z of each, and triangles, three vertex numbers each.
+template <class Real>
+struct MeshArrays {
+    const Real* vertices;
+    std::size_t vertex_count;
+    const std::int32_t* triangles;
+    std::size_t triangle_count;
+};
+
+}  // namespace isocore::simplification

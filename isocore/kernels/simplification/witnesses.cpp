@@ -1,0 +1,139 @@
+// witnesses.cpp - Which of the reference's vertices each triangle answers for when simplification begins.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "simplification/outward.hpp"
+
+namespace isocore::simplification {
+namespace {
+
+// The reference's vertices that are not vertices of the input. Both are mostly in the same order.
+template <class Real>
+std::vector<std::int32_t> others(const MeshArrays<Real>& input, const MeshArrays<Real>& reference) {
+    const auto at = [](const MeshArrays<Real>& mesh, std::size_t n) {
+        const Real* place = mesh.vertices + 3 * n;
+        return std::array<Real, 3>{place[0], place[1], place[2]};
+    };
+    std::vector<std::int32_t> out;
+    std::size_t next = 0;
+    for (std::size_t n = 0; n < reference.vertex_count; ++n) {
+        if (next < input.vertex_count && at(input, next) == at(reference, n))
+            ++next;
+        else
+            out.push_back(static_cast<std::int32_t>(n));
+    }
+    if (next == input.vertex_count) return out;
+    std::vector<std::array<Real, 3>> known(input.vertex_count);
+    for (std::size_t n = 0; n < known.size(); ++n) known[n] = at(input, n);
+    std::sort(known.begin(), known.end());
+    out.clear();
+    for (std::size_t n = 0; n < reference.vertex_count; ++n) {
+        if (!std::binary_search(known.begin(), known.end(), at(reference, n)))
+            out.push_back(static_cast<std::int32_t>(n));
+    }
+    return out;
+}
+
+// The squared distance from the origin to a triangle. Follows C. Ericson, "Real-Time Collision Detection", 2005,
+// section 5.1.5: which corner, side or inside is nearest.
+float squared_distance(const Spot& a, const Spot& b, const Spot& c) {
+    const Spot ab = minus(b, a), ac = minus(c, a);
+    const float d1 = -dot(ab, a), d2 = -dot(ac, a), d3 = -dot(ab, b), d4 = -dot(ac, b), d5 = -dot(ab, c),
+                d6 = -dot(ac, c);
+    const auto along = [](const Spot& from, const Spot& way, float share) {
+        const Spot at{from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
+        return dot(at, at);
+    };
+    if (d1 <= 0 && d2 <= 0) return dot(a, a);
+    if (d3 >= 0 && d4 <= d3) return dot(b, b);
+    if (d6 >= 0 && d5 <= d6) return dot(c, c);
+    const float to_c = d1 * d4 - d3 * d2, to_b = d5 * d2 - d1 * d6, to_a = d3 * d6 - d5 * d4;
+    if (to_c <= 0 && d1 >= 0 && d3 <= 0) return along(a, ab, d1 / (d1 - d3));
+    if (to_b <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
+    if (to_a <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    const Spot normal = cross(ab, ac);
+    const float off = dot(normal, a);
+    return off * off / dot(normal, normal);
+}
+
+// The triangle nearest to a place: among those in the cubes within the limit, or else within ever more.
+template <class Real>
+std::int32_t nearest(const Mesh<Real>& mesh, const TriangleGrid& grid, const std::array<Real, 3>& place, float limit) {
+    const Cells& cells = grid.cells();
+    std::int32_t found = kNone;
+    for (float reach = limit; found == kNone; reach *= 2) {
+        float best = std::numeric_limits<float>::infinity();
+        Cell low{}, high{};
+        bool is_all = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double step = static_cast<double>(reach / mesh.stretch()[a]), at = static_cast<double>(place[a]);
+            low[a] = cells.clamped(cells.in_cells(at - step, a), a) >> TriangleGrid::kBits;
+            high[a] = cells.clamped(cells.in_cells(at + step, a), a) >> TriangleGrid::kBits;
+            is_all = is_all && low[a] == 0 &&
+                     static_cast<std::size_t>(high[a]) == (cells.dims[a] - 1) >> TriangleGrid::kBits;
+        }
+        for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                for (std::int32_t i = low[0]; i <= high[0]; ++i) {
+                    grid.each_in(grid.number({i, j, k}), [&](std::int32_t triangle) {
+                        const auto& c = mesh.triangles[static_cast<std::size_t>(triangle)].corners;
+                        const auto corner = [&](std::size_t n) {
+                            return mesh.relative(mesh.places[static_cast<std::size_t>(c[n])].at, place);
+                        };
+                        const float squared = squared_distance(corner(0), corner(1), corner(2));
+                        if (squared < best || (squared == best && triangle < found)) {
+                            best = squared;
+                            found = triangle;
+                        }
+                    });
+                }
+            }
+        }
+        if (is_all || !(reach > 0)) break;
+    }
+    return found;
+}
+
+}  // namespace
+
+template <class Real>
+void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const TriangleGrid& grid,
+                    float limit, int threads, Mesh<Real>& mesh) {
+    if (input.vertices == reference.vertices) return;
+    const std::vector<std::int32_t> numbers = others(input, reference);
+    const auto place = [&](std::size_t n) {
+        const Real* at = reference.vertices + 3 * static_cast<std::size_t>(numbers[n]);
+        return std::array<Real, 3>{at[0], at[1], at[2]};
+    };
+    std::vector<std::int32_t> triangles(numbers.size());
+    constexpr std::size_t kAtOnce = 4096;
+    parallel_for(threads, (numbers.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t task) {
+        const std::size_t end = std::min(numbers.size(), (task + 1) * kAtOnce);
+        for (std::size_t n = task * kAtOnce; n < end; ++n) triangles[n] = nearest(mesh, grid, place(n), limit);
+    });
+    // Those of one triangle follow each other in memory.
+    std::vector<std::size_t> next(mesh.triangles.size() + 1);
+    for (const std::int32_t triangle : triangles) ++next[static_cast<std::size_t>(triangle) + 1];
+    for (std::size_t t = 0; t + 1 < next.size(); ++t) next[t + 1] += next[t];
+    const std::size_t first = mesh.places.size();
+    mesh.places.resize(first + numbers.size());
+    for (std::size_t n = numbers.size(); n-- > 0;) {
+        if (triangles[n] == kNone) continue;
+        Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles[n])];
+        const std::size_t to = first + next[static_cast<std::size_t>(triangles[n])]++;
+        mesh.places[to] = {place(n), triangle.witness};
+        triangle.witness = static_cast<std::int32_t>(to);
+    }
+}
+
+template void find_witnesses(const MeshArrays<float>&, const MeshArrays<float>&, const TriangleGrid&, float, int,
+                             Mesh<float>&);
+template void find_witnesses(const MeshArrays<double>&, const MeshArrays<double>&, const TriangleGrid&, float, int,
+                             Mesh<double>&);
+
+}  // namespace isocore::simplification
