@@ -1,24 +1,24 @@
 """Read a VTU file, an unstructured grid in VTK's XML format, as a CellMesh.
 
 Here XML and its encodings end: the arrays of each piece go to vtk_mesh.py, which knows cells and fields but no
-file format. Only the arrays that are needed are decoded, from the mapped file. XML that the tag scan does not follow
-(UTF-16, CDATA, entities, comments inside the numbers) is written plainly first.
+file format. Only the arrays that are needed are decoded, appended ones straight from the disk. XML that the tag scan
+does not follow (UTF-16, CDATA, entities, comments inside the numbers) is written plainly first.
 """
 
 from __future__ import annotations
 
 import os
-from mmap import ACCESS_READ, mmap
-from pathlib import Path
+from contextlib import suppress
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, reading
 from isocore.readers.options import ReadOptions
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
+from isocore.readers.vtu_file import StoredFile
 from isocore.readers.vtu_layout import UnusualLayout, scan
 from isocore.readers.vtu_plain import plain
-from isocore.readers.vtu_source import MappedSource, Source
+from isocore.readers.vtu_source import StoredSource
 
 Pathlike = os.PathLike[str] | str
 
@@ -39,20 +39,37 @@ def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
         return tuple(sorted(open_vtu(os.fspath(path)).fields, key=lambda field: field.of != "points"))
 
 
-def open_vtu(path: str) -> Source:
+def open_vtu(path: str) -> StoredSource:
     """The file's fields and pieces, its tags read and none of its numbers."""
-    with Path(path).open("rb") as file:
-        head = file.read(64)
+    file = StoredFile(path)
+    try:
+        head = bytes(file.read(0, 64))
         if not head:
             raise InputError(f"{path}: is empty; copy it again")
         if head.startswith(b"# vtk DataFile"):
             raise InputError(
                 f"{path}: is a legacy VTK file under the suffix of an XML one; convert it to .vtu"
             )
-        data = mmap(file.fileno(), 0, access=ACCESS_READ)
+        source = _source(path, file)
+    except BaseException:
+        file.close()
+        raise
+    if source.arrays.file is None:
+        file.close()
+    return source
+
+
+def _source(path: str, file: StoredFile) -> StoredSource:
+    """By what the tags say; the whole file is in memory where its head does not hold all of them."""
+    data = file.tags()
+    if len(data) < file.size:
+        with suppress(UnusualLayout, InputError):  # what looked like the appended data was a text or a comment
+            layout = scan(path, data)
+            if layout.appended is not None:
+                return StoredSource(path, data[: layout.appended[1]], layout, file)
+        data = file.all()
     try:
-        layout = scan(path, data)
+        return StoredSource(path, data, scan(path, data), None)
     except UnusualLayout:
-        text = plain(path, data)
-        return MappedSource(path, text, scan(path, text))
-    return MappedSource(path, data, layout)
+        data = plain(path, data)
+        return StoredSource(path, data, scan(path, data), None)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from isocore.errors import InputError
 from isocore.readers.vtu_blocks import BadBlock, Segments, payload
+from isocore.readers.vtu_file import StoredFile, Stretch
 from isocore.readers.vtu_layout import ArrayTag, Layout
 from isocore.readers.vtu_words import floats, integers
 
@@ -45,17 +46,18 @@ class _Used:
 
 @dataclass(frozen=True, slots=True)
 class ArrayReader:
-    """Reads the arrays of one mapped VTU file."""
+    """Reads the arrays of one VTU file. file: where its appended data are; None where they lie in `data`, too."""
 
     path: str
     data: mmap | bytes
     layout: Layout
+    file: StoredFile | None = None
     used: _Used = field(default_factory=lambda: _Used())
 
     def read(self, tag: ArrayTag, values: int | None = None) -> npt.NDArray[Any]:
         """The array's numbers, flat, in the file's type and byte order; `values`: how many it has to hold.
 
-        The result may look into the mapped file: copy what is to outlive it.
+        The result may look into `data`: copy what is to outlive it.
         """
         try:
             numbers = self._ascii(tag) if tag.format == "ascii" else self._binary(tag)
@@ -78,7 +80,8 @@ class ArrayReader:
     def _binary(self, tag: ArrayTag) -> npt.NDArray[Any]:
         dtype = self._dtype(tag)
         if tag.format == "binary":
-            text, base64 = self._inline(tag), True
+            text: memoryview | Stretch = self._inline(tag)
+            base64 = True
         elif tag.format == "appended":
             text, base64 = self._appended(tag)
         else:
@@ -86,7 +89,7 @@ class ArrayReader:
         header = np.dtype(self._order() + DTYPES[self.layout.header_type])
         segments = Segments(text, header, base64=base64)
         block = payload(segments, self.layout.compressor)
-        self.used.add(segments.position, len(block), len(self.data))
+        self.used.add(segments.position, len(block), self.file.size if self.file else len(self.data))
         if len(block) % dtype.itemsize:
             raise BadBlock(
                 f"has {len(block):,} bytes, which is no multiple of {dtype.itemsize}; copy the file again"
@@ -106,13 +109,14 @@ class ArrayReader:
             return memoryview(self.data[first:end].translate(None, b" \t\r\n"))
         return memoryview(self.data)[first:end]
 
-    def _appended(self, tag: ArrayTag) -> tuple[memoryview, bool]:
+    def _appended(self, tag: ArrayTag) -> tuple[memoryview | Stretch, bool]:
         if self.layout.appended is None or tag.offset is None:
             raise BadBlock("is said to be appended, but the file has no appended data for it; copy it again")
         encoding, start = self.layout.appended
         if encoding not in ("raw", "base64"):
             raise BadBlock(f"is appended as {encoding!r}; raw or base64 is needed")
-        return memoryview(self.data)[start + tag.offset :], encoding == "base64"
+        first = start + tag.offset
+        return Stretch(self.file, first) if self.file else memoryview(self.data)[first:], encoding == "base64"
 
     def _ascii(self, tag: ArrayTag) -> npt.NDArray[Any]:
         dtype = self._dtype(tag).newbyteorder("=")

@@ -18,6 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from itertools import accumulate
 from types import ModuleType
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -44,6 +45,13 @@ class BadBlock(Exception):
     """A block that is not what its header says; the text continues the sentence `array 'p' ...`."""
 
 
+class Letters(Protocol):
+    """Bytes that can be asked for in part, as a memoryview or as what lies on the disk."""
+
+    def __len__(self) -> int: ...
+    def __getitem__(self, part: slice, /) -> memoryview: ...
+
+
 class Segments:
     """Takes one segment after the other from the text of a block.
 
@@ -51,7 +59,7 @@ class Segments:
     header: dtype of the header's integers.
     """
 
-    def __init__(self, text: memoryview, header: np.dtype[np.unsignedinteger], *, base64: bool) -> None:
+    def __init__(self, text: Letters, header: np.dtype[np.unsignedinteger], *, base64: bool) -> None:
         self.text = text
         self.header = header
         self.base64 = base64

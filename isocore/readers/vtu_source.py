@@ -1,10 +1,10 @@
-"""Where the arrays of a VTU file come from: the mapped file, decoded one by one."""
+"""Where the arrays of a VTU file come from: the file's bytes, decoded one by one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from mmap import mmap
-from typing import Any, Protocol
+from typing import Any
 
 import numpy.typing as npt
 
@@ -14,6 +14,7 @@ from isocore.readers.vtk_ghosts import GHOST_TYPE, OF_CELLS
 from isocore.readers.vtk_pieces import PieceData
 from isocore.readers.vtk_polyhedra import FaceLists, FourArrays
 from isocore.readers.vtu_arrays import DTYPES, ArrayReader
+from isocore.readers.vtu_file import StoredFile
 from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
 
 #: Arrays of polyhedra since VTK 9.4.
@@ -24,20 +25,12 @@ class NoCells(FieldError):
     """A file without cells, which is as good as any among the pieces of a mesh."""
 
 
-class Source(Protocol):
-    """A file whose fields are known and whose pieces can be read."""
+class StoredSource:
+    """A file whose arrays are decoded here. file: where its appended data are; None where all is in `data`."""
 
-    @property
-    def fields(self) -> tuple[FieldInfo, ...]: ...
-    def pieces(self, field: FieldInfo) -> Iterator[PieceData]: ...
-
-
-class MappedSource:
-    """A mapped file whose arrays are decoded here."""
-
-    def __init__(self, path: str, data: mmap | bytes, layout: Layout) -> None:
+    def __init__(self, path: str, data: mmap | bytes, layout: Layout, file: StoredFile | None) -> None:
         self.path = path
-        self.arrays = ArrayReader(path, data, layout)
+        self.arrays = ArrayReader(path, data, layout, file)
         self.full = [piece for piece in layout.pieces if piece.points and piece.cells]
         if not self.full:
             raise NoCells(f"{path}: holds no cells, so there is nothing to contour")
