@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from isocore.digits import counted
 from isocore.errors import OptionError
@@ -22,6 +23,7 @@ _LIMIT = re.compile(
     r"(?P<key>[^<>\s]+)\s*(?P<sense>[<>])\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*(?P<percent>%?)",
     re.ASCII,
 )
+_NUMBERS: WeakKeyDictionary[RunReport, dict[str, float]] = WeakKeyDictionary()
 _SHORT = {"triangles": "surface.triangles", "vertices": "surface.vertices", "seconds": "seconds.total"}
 
 
@@ -67,7 +69,7 @@ def check_limits(limits: list[Limit], *batches: BatchReport) -> None:
     runs = [run for batch in batches for run in batch.outputs]
     if not runs:
         return
-    known = {key for run in runs for key, _ in _numbers(run_as_dict(run))}
+    known = {key for run in runs for key in _numbers_of(run)}
     known |= {short for short, key in _SHORT.items() if key in known}
     for limit in limits:
         if limit.key not in known:
@@ -79,8 +81,16 @@ def check_limits(limits: list[Limit], *batches: BatchReport) -> None:
 
 def value_of(run: RunReport, key: str) -> float | None:
     """The number under a dotted key; None where the record has none."""
-    value = dict(_numbers(run_as_dict(run))).get(_SHORT.get(key, key))
+    value = _numbers_of(run).get(_SHORT.get(key, key))
     return None if value is None else float(value)
+
+
+def _numbers_of(run: RunReport) -> dict[str, float]:
+    """The numbers of a record; kept, since every limit and every column asks for some."""
+    numbers = _NUMBERS.get(run)
+    if numbers is None:
+        numbers = _NUMBERS[run] = dict(_numbers(run_as_dict(run)))
+    return numbers
 
 
 def _numbers(record: dict[str, Any], before: str = "") -> Iterator[tuple[str, float]]:
