@@ -92,7 +92,7 @@ class Volume:
     @property
     def spacing(self) -> tuple[float, float, float]:
         """Length of one index step along each axis, in world units."""
-        x, y, z = np.sqrt((self.affine[:3, :3] ** 2).sum(axis=0)).tolist()
+        x, y, z = (math.hypot(*column) for column in self.affine[:3, :3].T.tolist())
         return x, y, z
 
     def in_space(self, space: Space) -> Volume:

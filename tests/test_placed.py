@@ -11,6 +11,7 @@ import shapes_mesh
 from isocore import _kernels
 from isocore.measurements import measure
 from isocore.surface import Surface, place_fresh
+from isocore.volume import Volume
 
 
 def orientations():
@@ -72,6 +73,12 @@ def test_fresh_arrays_are_placed_where_they_lie():
     assert placed.vertices is vertices
     assert placed.triangles is triangles
     assert measure(placed).volume == 1
+
+
+def test_a_spacing_whose_square_is_no_number_is_one() -> None:
+    """As a damaged header has it, without a warning of Python's."""
+    volume = Volume(np.zeros((2, 2, 2), np.float32, order="F"), affine=np.diag([1e200, 1e-200, 3.0, 1.0]))
+    assert volume.spacing == (1e200, 1e-200, 3.0)
 
 
 @pytest.mark.parametrize(

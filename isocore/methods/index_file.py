@@ -77,7 +77,7 @@ def load_index(path: Path, mesh: CellMesh) -> MeshIndex:
             if header["mesh"] != mesh_hash(mesh):
                 raise InputError(f"{path}: {_what_changed(header, mesh)}; {AGAIN}")
             return _index(file, header, mesh)
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
             why = f" ({error})" if isinstance(error, _Damage) else ""
             raise InputError(f"{path}: is damaged{why}; {AGAIN}") from error
 
@@ -123,14 +123,30 @@ def _index(file: BinaryIO, header: dict[str, Any], mesh: CellMesh) -> MeshIndex:
     return MeshIndex(parts[0], parts[1], original, edges)
 
 
-def holds_ranges(index: MeshIndex, mesh: CellMesh) -> bool:
-    """Whether low and high of each skeleton cell are those of the mesh's values; `index` names only what is there."""
+def is_of(index: MeshIndex, mesh: CellMesh) -> bool:
+    """Whether the index has the mesh's cells, and its skeleton their values; `index` names only what is there."""
+    mixed = np.arange(1, len(mesh.points) + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    mixed ^= mixed >> np.uint64(29)
+    renumbered = mixed[index.original]
+    for part, cells in ((index.tets, mesh.tets), (index.hexes, mesh.hexes)):
+        if _sum_of(renumbered, part.records[:, : cells.shape[1]]) != _sum_of(mixed, cells):
+            return False
     heights = np.where(np.isfinite(mesh.values), mesh.values.astype(np.float64), -np.inf)[index.original]
     return all(
         np.array_equal(end(heights[part.records[part.skeleton, :corners]], axis=1, initial=start), stated)
         for part, corners in ((index.tets, 4), (index.hexes, 8))
         for end, start, stated in ((np.min, np.inf, part.low), (np.max, -np.inf, part.high))
     )
+
+
+def _sum_of(mixed: npt.NDArray[np.uint64], cells: npt.NDArray[np.int32]) -> int:
+    """The same for the same cells in any order, and hardly ever for others. mixed: a number for each point."""
+    sums = np.zeros(len(cells), np.uint64)
+    for corner in cells.T:
+        sums += mixed[corner]
+    sums *= np.uint64(0xBF58476D1CE4E5B9)
+    sums ^= sums >> np.uint64(31)
+    return int(sums.sum(dtype=np.uint64))
 
 
 def _shapes(part: dict[str, Any], cells: npt.NDArray[np.int32]) -> dict[str, tuple[int, ...]]:

@@ -15,7 +15,7 @@ from isocore.errors import InputError, IsocoreError
 from isocore.extraction import Extract, Extraction, Field, Findings, Outlook, Search
 from isocore.job import Options
 from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
-from isocore.methods.index_file import AGAIN, holds_ranges, load_index
+from isocore.methods.index_file import AGAIN, is_of, load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, needs_edges, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
@@ -93,8 +93,8 @@ def _checked(path: Path, mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
     """A loaded index, ready. Raises InputError where it names what is not there, whatever its checksum says."""
     try:
         ready = ready_index(mesh, index)
-        if not holds_ranges(index, mesh):
-            raise ValueError("the skeleton has other values than the mesh")
+        if not is_of(index, mesh):
+            raise ValueError("it has other cells or values than the mesh")
         return ready
     except ValueError as error:
         raise InputError(f"{path}: is damaged ({error}); {AGAIN}") from error

@@ -175,7 +175,7 @@ def _after_lines(file: Path, start: int, lines: int) -> int:
 def _from_text(file: Path, start: int, encoding: str, layout: Layout) -> bytes:
     """The samples' bytes of a text or hex encoding."""
     with file.open("rb") as text:
-        text.seek(max(start, 0))
+        text.seek(min(max(start, 0), file.stat().st_size))
         written = text.read().split()
     try:
         if encoding == "hex":

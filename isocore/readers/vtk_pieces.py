@@ -17,6 +17,9 @@ from isocore.readers.vtk_ghosts import cells_at, ghost_cells, hidden_points
 from isocore.readers.vtk_polyhedra import POLYHEDRON, FaceLists, polyhedra
 from isocore.readers.vtk_types import FACETED
 
+#: A volume is a product of three lengths, and has to be a number.
+FARTHEST = 1e100
+
 
 @dataclass(frozen=True, slots=True)
 class PieceData:
@@ -75,8 +78,10 @@ def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None
     """One piece without its ghosts. Raises InputError, FieldError."""
     path = piece.path or path
     points = np.array(piece.points, dtype=np.float64)
-    if not np.isfinite(points).all():
-        raise InputError(f"{path}: some of its points have coordinates that are not finite; write it again")
+    if points.size and not (points.min() >= -FARTHEST and points.max() <= FARTHEST):  # NaN is neither
+        raise InputError(
+            f"{path}: some of its points have coordinates that are not finite, or beyond {FARTHEST:g}; write it again"
+        )
     arrays = CellArrays.checked(path, (piece.types, piece.offsets, piece.connectivity))
     arrays = replace(arrays, keep=_kept(path, piece, arrays), degrees=piece.degrees, old=piece.old)
     types = arrays.types if arrays.keep is None else arrays.types[arrays.keep]

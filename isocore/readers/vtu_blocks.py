@@ -79,7 +79,10 @@ class Segments:
         if wanted <= 0:
             self.carry = carry[size:]
             return memoryview(carry[:size])
-        decoded = binascii.a2b_base64(self._letters(-(-wanted // 3) * 4, size))
+        try:
+            decoded = binascii.a2b_base64(self._letters(-(-wanted // 3) * 4, size))
+        except binascii.Error:
+            decoded = b""
         if len(decoded) < wanted:
             raise BadBlock("has damaged base64; copy the file again")
         self.carry = decoded[wanted:]

@@ -14,6 +14,7 @@ import re
 import struct
 import zlib
 from collections.abc import Callable, Sequence
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -38,7 +39,7 @@ _WORD = re.compile(rb"[A-Za-z_]\w*")
 _ATTRIBUTE = re.compile(rb"(\w+)=(\"[^\"]*\"|'[^']*')")
 _TAG = re.compile(rb"<[^<>]{1,300}>")
 _BASE64 = re.compile(rb">\s*([A-Za-z0-9+/]{8,}={0,2}(?:[A-Za-z0-9+/]+={0,2})?)\s*<")
-_BOMB_BYTES = 1 << 26
+_BOMB_BYTES = 1 << 24
 
 
 def number_text(random: Random) -> bytes:
@@ -130,6 +131,12 @@ def damaged_text(random: Random, content: bytes) -> bytes:
         name, colon, value = lines[at].partition(b":")
         lines[at] = name + colon + random.choice((b" ", b"")) + random.choice((word, number_text))(random) + value[:20]
     return b"\n".join(lines)
+
+
+def damaged_numbers(random: Random, content: bytes) -> bytes:
+    """One number of a text exchanged."""
+    found = _one(random, _NUMBER, content)
+    return content[: found.start()] + number_text(random) + content[found.end() :] if found else content
 
 
 def damaged_xml(random: Random, content: bytes) -> bytes:
@@ -228,10 +235,27 @@ def damaged_json(random: Random, content: bytes) -> bytes:
         return damaged_bytes(random, content)
 
 
+def gzipped(content: bytes) -> bytes:
+    """Quickly, and without a time."""
+    return gzip.compress(content, 1, mtime=0)
+
+
+def bzipped(content: bytes) -> bytes:
+    """Quickly."""
+    return bz2.compress(content, 1)
+
+
+@cache
+def _bomb(pack: Callable[[bytes], bytes]) -> bytes:
+    return pack(bytes(_BOMB_BYTES))
+
+
 def within(packing: str, inner: Mutator) -> Mutator:
-    """Damage behind the packing, in front of it, or to it: checksums then hold or do not."""
-    pack = {"gzip": lambda data: gzip.compress(data, 1, mtime=0), "bzip2": lambda data: bz2.compress(data, 1)}[packing]
+    """Damage behind the packing, in front of it, or to it: checksums then hold or do not; or too much content."""
+    pack = {"gzip": gzipped, "bzip2": bzipped}[packing]
     unpack = {"gzip": gzip.decompress, "bzip2": bz2.decompress}[packing]
+
+    bomb = _bomb(pack)
 
     def mutate(random: Random, content: bytes) -> bytes:
         kind = random.randrange(12)
@@ -248,7 +272,7 @@ def within(packing: str, inner: Mutator) -> Mutator:
             return pack(plain[:at]) + random.choice((b"", bytes(random.randrange(20)))) + pack(plain[at:])
         if kind == 10:
             return content + random.choice((bytes(700), random.randbytes(9), pack(b""), pack(plain)[:-3], b"\x1f\x8b"))
-        return content if random.random() < 0.98 else pack(plain + bytes(_BOMB_BYTES))
+        return content + bomb if random.random() < 0.02 else content
 
     return mutate
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import curved_cells
 import numpy as np
 import vtu_files
 from fuzz.mutations import (
@@ -22,6 +23,7 @@ from fuzz.mutations import (
     damaged_base64,
     damaged_bytes,
     damaged_json,
+    damaged_numbers,
     damaged_text,
     damaged_xml,
     of_fields,
@@ -212,12 +214,44 @@ def vtu() -> Iterator[Seed]:
     meshes = _meshes()
     for number, encoding in enumerate(vtu_files.every_encoding()):
         content = _vtu(meshes if number % 4 == 0 else meshes[number % 3], encoding)
-        mutators = [damaged_xml, damaged_xml, damaged_text]
+        mutators = [damaged_xml, damaged_numbers, damaged_numbers, damaged_text]
         mutators.append(damaged_base64 if encoding.format == "binary" else damaged_bytes)
         yield Seed({"h.vtu": content}, {"h.vtu": some(*mutators)})
     wide = _vtu(meshes[0], vtu_files.Encoding()).decode()
     for unusual in (wide.encode("utf-16"), wide.replace("<Points>", "<Points><!-- 1 -->").encode()):
         yield Seed({"h.vtu": unusual}, {"h.vtu": some(damaged_xml, damaged_bytes)})
+
+
+def cells() -> Iterator[Seed]:
+    """What the files of simulations hold besides: polyhedra in both listings, curved cells, prisms, ghosts."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    points = np.concatenate([corners, np.add(corners, (1, 0, 0))])
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [1, 5, 7, 3], [3, 7, 6, 2], [2, 6, 4, 0]]
+    faces = [sides, [[n + 8 for n in side] for side in sides]]
+    solid = [(42, list(range(8))), (42, list(range(8, 16)))]
+    every = [side for some_sides in faces for side in some_sides]
+    stream = [[6, *(n for side in some_sides for n in (4, *side))] for some_sides in faces]
+    lists = (
+        {"faces": np.concatenate(stream), "faceoffsets": np.cumsum([len(one) for one in stream])},
+        {
+            "face_connectivity": np.concatenate(every),
+            "face_offsets": np.arange(4, 49, 4),
+            "polyhedron_to_faces": np.arange(12),
+            "polyhedron_offsets": np.array([6, 12]),
+        },
+    )
+    fields = {"u": points.sum(axis=1), "vtkGhostType": np.zeros(16, "u1")}
+    meshes = [vtu_files.Mesh(points, solid, fields, {"vtkGhostType": np.zeros(2, "u1")}, more) for more in lists]
+    meshes.append(vtu_files.Mesh(corners, [(41, list(range(8)))], {"u": np.arange(8.0)}))
+    for kind in ("tet10", "hex27", "wedge15", "pyramid13", "hex72-124", "tet71-3"):
+        mesh, _ = curved_cells.box(kind, 1)
+        meshes.append(mesh.with_field("u", mesh.points.sum(axis=1)))
+    encodings = (vtu_files.Encoding(), vtu_files.Encoding("appended", "raw"), *vtu_files.every_encoding()[5:9])
+    for mesh in meshes:
+        for encoding in encodings:
+            mutators = [damaged_xml, damaged_numbers, damaged_numbers, damaged_text]
+            mutators.append(damaged_base64 if encoding.format == "binary" else damaged_bytes)
+            yield Seed({"j.vtu": _vtu(mesh, encoding)}, {"j.vtu": some(*mutators)})
 
 
 @cache
@@ -228,4 +262,5 @@ def seeds_of(reader: str) -> tuple[Seed, ...]:
 
 READERS = {
     "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "raw": raw, "gzip": packed, "vtu": vtu,
+    "cells": cells,
 }  # fmt: skip

@@ -81,6 +81,8 @@ def check_line(message: str) -> None:
     """A message as a user may see it."""
     if not message or not message.isprintable() or len(message) > 300:
         raise Broken(f"no printable line of at most 300 characters: {message!r}")
+    if "cannot be read (" in message and message.endswith("check that it is what its suffix says"):
+        raise Broken(f"some library's own words: {message}")
 
 
 def _read(path: Path, random: Random) -> None:
@@ -185,8 +187,8 @@ def _walked(path: Path, random: Random) -> None:
     """The surface is the right one, whatever the index says; only a forger may leave out cells of the skeleton."""
     mesh, whole, surfaces = _indexed()
     _attempt(path, lambda: load_index(path, mesh))
-    extract = prepare_thinning(mesh, Options(threads=random.choice((1, 2))), Outlook(index=path))
-    same_arrays = path.read_bytes().endswith(whole[-2000:])
+    extract = prepare_thinning(mesh, Options(threads=1 if random.randrange(8) else 2), Outlook(index=path))
+    same_arrays = path.read_bytes().endswith(whole.split(b"\n", 3)[3])
     for isovalue, right in random.sample(surfaces, len(surfaces)):
         found = extract(isovalue)
         for warning in found.warnings:

@@ -14,7 +14,6 @@ import sys
 import time
 import traceback
 import warnings
-from collections.abc import Callable
 from contextlib import suppress
 from mmap import mmap
 from pathlib import Path
@@ -27,6 +26,7 @@ from fuzz.targets import CASES, TARGETS, Broken, random_of
 MOST_SECONDS = 10.0
 #: Memory a small input may take whatever it is, and the bytes that one of a packed input may become.
 _ANYWAY, _INFLATED = 16 << 20, 1032
+_CLOCK_EVERY = 50  # inputs: reading this clock takes as long as some of them
 _GUARD_BYTES = 6 << 30
 AT = struct.Struct("<qq")  # number, milliseconds since it was begun
 
@@ -69,15 +69,17 @@ def main() -> None:
         _run(target, int(seed), -1, folder / "in")
     memory = Memory()
     with (folder / "at").open("r+b") as file, mmap(file.fileno(), AT.size) as at:
-        for number in range(int(first), int(last), int(step)):
+        for done, number in enumerate(range(int(first), int(last), int(step))):
+            if done % _CLOCK_EVERY == 0:
+                processor = time.process_time()
             at[:] = AT.pack(number, int(time.monotonic() * 1000))
             target = targets[number % len(targets)]
             leaked.clear()
-            start = time.process_time()
-            kind, detail, justified = _run(target, int(seed), number, folder / "in", made=memory.grown)
-            seconds = time.process_time() - start
-            if seconds > MOST_SECONDS:
+            begun = time.monotonic()
+            kind, detail, justified = _run(target, int(seed), number, folder / "in")
+            if time.monotonic() - begun > MOST_SECONDS and (seconds := time.process_time() - processor) > MOST_SECONDS:
                 _tell(target, seed, number, "slow", f"{seconds:.1f} seconds")
+                processor = time.process_time()
             if (grown := memory.grown()) > justified:
                 _tell(target, seed, number, "memory", f"{grown:,} bytes where {justified:,} are justified")
             if leaked:
@@ -87,13 +89,8 @@ def main() -> None:
         at[:] = AT.pack(int(last), int(time.monotonic() * 1000))
 
 
-def _run(
-    target: str, seed: int, number: int, folder: Path, *, made: Callable[[], object] = lambda: None
-) -> tuple[str, str, int]:
-    """What was wrong with one input, in a word and in full, and the bytes of memory that it justifies.
-
-    made: called once the input is there, before it is used.
-    """
+def _run(target: str, seed: int, number: int, folder: Path) -> tuple[str, str, int]:
+    """What was wrong with one input, in a word and in full, and the bytes of memory that it justifies."""
     random = random_of(target, seed, number)
     files = CASES[target].made(random)
     folder.mkdir(exist_ok=True)
@@ -102,7 +99,6 @@ def _run(
             left.unlink()
     for name, content in files.items():
         (folder / name).write_bytes(content)
-    made()
     justified = _ANYWAY + 2 * _INFLATED * sum(map(len, files.values()))
     try:
         CASES[target].asked(folder / next(iter(files)), random)

@@ -163,10 +163,11 @@ def test_a_word_among_the_numbers_is_refused(word, tmp_path):
     assert "array 'connectivity' holds" in refusal(path)
 
 
-def test_coordinates_that_are_not_finite_are_refused(tmp_path):
-    """There is no place for such a point."""
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf, 1e101, -1e300])
+def test_coordinates_that_are_not_finite_or_have_no_volume_are_refused(number, tmp_path):
+    """There is no place for such a point, or no product of three of its coordinates."""
     points = POINTS.copy()
-    points[3, 1] = np.nan
+    points[3, 1] = number
     assert "not finite" in refusal(write(tmp_path / "a.vtu", Mesh(points, CELLS, GOOD.point_fields)))
 
 
