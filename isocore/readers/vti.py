@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from mmap import ACCESS_READ, mmap
 from pathlib import Path
 
 from isocore.errors import FieldError, InputError, reading
@@ -13,9 +12,9 @@ from isocore.readers.options import ReadOptions
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_ghosts import GHOST_TYPE
 from isocore.readers.vtk_images import Image, Samples, image_volume
-from isocore.readers.vtu_arrays import DTYPES, ArrayReader
-from isocore.readers.vtu_layout import IMAGE, UnusualLayout, extent_of, scan
-from isocore.readers.vtu_plain import plain
+from isocore.readers.vtu_arrays import DTYPES
+from isocore.readers.vtu_layout import IMAGE, extent_of
+from isocore.readers.vtu_opening import opened
 from isocore.volume import Volume
 
 
@@ -24,14 +23,9 @@ class ImageFile:
 
     def __init__(self, path: Path) -> None:
         self.path = os.fspath(path)
-        with path.open("rb") as file:
-            data: mmap | bytes = mmap(file.fileno(), 0, access=ACCESS_READ)
-        try:
-            layout = scan(self.path, data, IMAGE)
-        except UnusualLayout:
-            data = plain(self.path, data)
-            layout = scan(self.path, data, IMAGE)
-        self.arrays, self.pieces = ArrayReader(self.path, data, layout), layout.pieces
+        self.arrays = opened(self.path, IMAGE)
+        layout = self.arrays.layout
+        self.pieces = layout.pieces
         self.image = _image(self.path, layout.grid)
         if not self.pieces:
             raise FieldError(f"{path}: holds no samples, so there is nothing to contour")

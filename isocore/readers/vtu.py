@@ -8,16 +8,13 @@ does not follow (UTF-16, CDATA, entities, comments inside the numbers) is writte
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 
 from isocore.cell_mesh import CellMesh
-from isocore.errors import InputError, reading
+from isocore.errors import reading
 from isocore.readers.options import ReadOptions
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
-from isocore.readers.vtu_file import StoredFile
-from isocore.readers.vtu_layout import UnusualLayout, scan
-from isocore.readers.vtu_plain import plain
+from isocore.readers.vtu_opening import opened
 from isocore.readers.vtu_source import StoredSource
 
 Pathlike = os.PathLike[str] | str
@@ -41,35 +38,4 @@ def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:
 
 def open_vtu(path: str) -> StoredSource:
     """The file's fields and pieces, its tags read and none of its numbers."""
-    file = StoredFile(path)
-    try:
-        head = bytes(file.read(0, 64))
-        if not head:
-            raise InputError(f"{path}: is empty; copy it again")
-        if head.startswith(b"# vtk DataFile"):
-            raise InputError(
-                f"{path}: is a legacy VTK file under the suffix of an XML one; convert it to .vtu"
-            )
-        source = _source(path, file)
-    except BaseException:
-        file.close()
-        raise
-    if source.arrays.file is None:
-        file.close()
-    return source
-
-
-def _source(path: str, file: StoredFile) -> StoredSource:
-    """By what the tags say; the whole file is in memory where its head does not hold all of them."""
-    data = file.tags()
-    if len(data) < file.size:
-        with suppress(UnusualLayout, InputError):  # what looked like the appended data was a text or a comment
-            layout = scan(path, data)
-            if layout.appended is not None:
-                return StoredSource(path, data[: layout.appended[1]], layout, file)
-        data = file.all()
-    try:
-        return StoredSource(path, data, scan(path, data), None)
-    except UnusualLayout:
-        data = plain(path, data)
-        return StoredSource(path, data, scan(path, data), None)
+    return StoredSource(opened(path))

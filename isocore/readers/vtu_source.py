@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from mmap import mmap
 from typing import Any
 
 import numpy.typing as npt
@@ -14,8 +13,7 @@ from isocore.readers.vtk_ghosts import GHOST_TYPE, OF_CELLS
 from isocore.readers.vtk_pieces import PieceData
 from isocore.readers.vtk_polyhedra import FaceLists, FourArrays
 from isocore.readers.vtu_arrays import DTYPES, ArrayReader
-from isocore.readers.vtu_file import StoredFile
-from isocore.readers.vtu_layout import ArrayTag, Layout, Piece
+from isocore.readers.vtu_layout import ArrayTag, Piece
 
 #: Arrays of polyhedra since VTK 9.4.
 _LISTED = ("face_connectivity", "face_offsets", "polyhedron_to_faces", "polyhedron_offsets")
@@ -26,14 +24,14 @@ class NoCells(FieldError):
 
 
 class StoredSource:
-    """A file whose arrays are decoded here. file: where its appended data are; None where all is in `data`."""
+    """A file whose arrays are decoded here."""
 
-    def __init__(self, path: str, data: mmap | bytes, layout: Layout, file: StoredFile | None) -> None:
-        self.path = path
-        self.arrays = ArrayReader(path, data, layout, file)
-        self.full = [piece for piece in layout.pieces if piece.points and piece.cells]
+    def __init__(self, arrays: ArrayReader) -> None:
+        self.path = arrays.path
+        self.arrays = arrays
+        self.full = [piece for piece in arrays.layout.pieces if piece.points and piece.cells]
         if not self.full:
-            raise NoCells(f"{path}: holds no cells, so there is nothing to contour")
+            raise NoCells(f"{arrays.path}: holds no cells, so there is nothing to contour")
 
     @property
     def fields(self) -> tuple[FieldInfo, ...]:

@@ -84,7 +84,7 @@ def test_a_file_that_gets_shorter_is_refused(
                 os.truncate(path, left % size)
             return found
 
-    monkeypatch.setattr("isocore.readers.vtu.StoredFile", Shrinking)
+    monkeypatch.setattr("isocore.readers.vtu_opening.StoredFile", Shrinking)
     if step == "tags" and encoding.format != "appended":  # all of it was read by then
         assert len(read_vtu(path, OPTIONS).values) == len(POINTS)
         return
