@@ -9,11 +9,15 @@ import os
 from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path, PurePath
 
 from isocore.batches.places import place_of
 from isocore.errors import OptionError
-from isocore.readers import SEARCHED, files_of, listed_files, suffix_of
+from isocore.readers import SEARCHED, files_of, listed_files, stranger_of, suffix_of
+
+#: Files of a folder without inputs that are looked at, so that a message can say what they are.
+_LOOKED_AT = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +69,21 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
     for name, is_folder in named:
         inside = _search(name) if is_folder else [Input(name, name.parent)]
         if not inside:
-            raise OptionError(f"{name}: holds no file isocore reads; known are {', '.join(SEARCHED)}")
+            raise OptionError(f"{name}: {_nothing_in(name)}")
         for item in inside:
             found.setdefault(place_of(item.path), replace(item, common=common))
     listed = {place_of(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
     return [item for place, item in found.items() if place not in listed]
+
+
+def _nothing_in(folder: Path) -> str:
+    """Why there is nothing to convert in a folder: by its own name, or by the first file that can be named."""
+    if found := stranger_of(folder):
+        return found
+    for path in islice(_walk(folder, []), _LOOKED_AT):
+        if found := stranger_of(path):
+            return f"holds no file isocore reads: {path.name} {found}"
+    return f"holds no file isocore reads; known are {', '.join(SEARCHED)}"
 
 
 def _is_folder(name: Path) -> bool:

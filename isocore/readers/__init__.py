@@ -67,6 +67,11 @@ def listed_files(path: Path) -> tuple[Path, ...]:
     return files_of(path)[1:] if suffix is not None and BY_SUFFIX[suffix].lists else ()
 
 
+def stranger_of(path: Path) -> str | None:
+    """What a file or a folder of an unknown suffix is, and what to do about it; None where nothing is known."""
+    return what_it_is(path, BY_SUFFIX, None) if suffix_of(path) is None else None
+
+
 def content_bytes(path: Path) -> int:
     """A guess at the bytes of an input with all that belongs to it, unpacked, by what costs no reading."""
     return sum(unpacked_bytes(file) for file in files_of(path))
@@ -125,5 +130,6 @@ __all__ = [
     "listed_files",
     "offered_fields",
     "read",
+    "stranger_of",
     "suffix_of",
 ]

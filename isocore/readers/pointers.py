@@ -58,6 +58,8 @@ def _of_a_file(size: bytes | None) -> str:
 def first_bytes(path: Path) -> bytes:
     """The first bytes, unpacked where they are gzip's; b"" where there are none to be had."""
     try:
+        if not path.is_file():  # a pipe would be waited for
+            return b""
         with path.open("rb") as file:
             head = file.read(_HEAD)
         return zlib.decompressobj(wbits=31).decompress(head, _HEAD) if head.startswith(MAGIC) else head

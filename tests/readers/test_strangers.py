@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import os
 import tarfile
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from click.testing import CliRunner
 from isocore.cli.convert import convert
 from scans import patched, ramp, save
 
-from isocore.errors import InputError, IsocoreError
+from isocore.batches.inputs import find_inputs
+from isocore.errors import InputError, IsocoreError, OptionError
 from isocore.readers import SEARCHED, ReadOptions, read
 from isocore.readers.formats import BY_SUFFIX
 from isocore.readers.strangers import STRANGERS
@@ -183,6 +185,21 @@ def test_bare_samples_may_begin_with_anything(tmp_path: Path) -> None:
     path.write_bytes(LFS)
     with pytest.raises(InputError, match="is a git-lfs pointer"):
         read(path)
+
+
+def test_a_folder_without_inputs_says_what_it_holds(tmp_path: Path) -> None:
+    """Exit code 2, and what to do with the first file that is known by name or by its first bytes."""
+    series = tmp_path / "series"
+    series.mkdir()
+    (series / "IM0001").write_bytes(bytes(128) + b"DICM" + bytes(300))
+    (tmp_path / "image.zarr" / "0").mkdir(parents=True)
+    for folder, said in ((series, "IM0001 is a DICOM file"), (tmp_path / "image.zarr", "is an OME-Zarr image")):
+        run = CliRunner().invoke(convert, [str(folder), "-i", "1"])
+        assert isinstance(run.exception, OptionError) and said in str(run.exception)
+    (series / "IM0001").unlink()
+    os.mkfifo(series / "IM0001")
+    with pytest.raises(OptionError, match="holds no file isocore reads; known are"):
+        find_inputs([series])
 
 
 def test_a_batch_names_each(tmp_path: Path) -> None:
