@@ -179,6 +179,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         if_changed=asked.if_changed or asked.force,
         force=asked.force,
         ambiguities=asked.ambiguities,
+        colour=asked.colour,
     )
 
 

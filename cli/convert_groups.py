@@ -9,7 +9,7 @@ from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
-from .values import Isovalue, Jobs, LabelList, MaxErrorType, Memory, Words
+from .values import Colour, Isovalue, Jobs, LabelList, MaxErrorType, Memory, Words
 
 _input, _isovalue, _method, _output, _batch, _report = map(option_of, GROUPS)
 
@@ -137,6 +137,13 @@ OUTPUT = (
         default=None,
         show_default="on where the format has them: not in stl",
         help="Write vertex normals, from the field's gradient.",
+    ),
+    _output(
+        "--color",
+        "colour",
+        type=Colour(),
+        metavar="'#rrggbb'",
+        help="Of the surface, in ply, obj (with a .mtl beside) and glb. Labels have their own.",
     ),
     _output(
         "--ambiguities",

@@ -45,6 +45,7 @@ class ConvertOptions:
     space: Space
     about: About | None
     normals: bool | None
+    colour: tuple[int, int, int] | None
     ambiguities: Path | None
     jobs: int | Literal["auto"]
     threads: int | None

@@ -33,7 +33,9 @@ class Records:
     def __init__(
         self, jobs: list[Job], paths: tuple[Path, ...], mesh_bytes: int, start: float, *, tell: Callable[[str], None]
     ) -> None:
-        self._places = {(id(job), str(target.output)): n for n, (job, target) in enumerate(_targets(jobs))}
+        self._places = {
+            (id(job), str(target.output), str(target.choice)): n for n, (job, target) in enumerate(_targets(jobs))
+        }
         self._runs: dict[int, RunReport] = {}
         self._paths = paths
         self._mesh_bytes = mesh_bytes
@@ -47,7 +49,7 @@ class Records:
 
     def add(self, job: Job, run: RunReport) -> None:
         """Keep a record and save the reports, each as often as it is quick to save."""
-        self._runs[self._places[id(job), run.output]] = run
+        self._runs[self._places[id(job), run.output, run.asked.asked]] = run
         self.save(all_of_them=False)
 
     def batch(self) -> BatchReport:

@@ -119,6 +119,18 @@ class Isovalue(_Worded):
         return choices.spread(str(value))
 
 
+class Colour(click.ParamType):
+    """Red, green and blue."""
+
+    name = "'#rrggbb'"
+
+    def convert(
+        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
+    ) -> tuple[int, int, int]:
+        """Three numbers from 0 to 255."""
+        return value if isinstance(value, tuple) else labels.parse_colour(str(value))
+
+
 class LabelList(_Worded):
     """Which labels of a label map."""
 

@@ -14,7 +14,8 @@ from typing import Any
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Field, Outlook
-from isocore.job import Options
+from isocore.job import Job, Options
+from isocore.labels import Label
 from isocore.methods.climbing import prepare_climbing
 from isocore.methods.label_map import prepare_labels
 from isocore.methods.marching_cubes import prepare_marching_cubes
@@ -36,6 +37,8 @@ __all__ = [
     "prepare",
 ]
 
+#: The backend that all others are compared with.
+REFERENCE = "mc"
 #: From so many isovalues of a mesh on, thinning it first is quicker than as many full scans.
 REPAYS_THINNING = 200
 
@@ -106,6 +109,17 @@ def default_backend(field_type: type, outlook: Outlook) -> tuple[str, str]:
     if outlook.isovalues < REPAYS_THINNING:
         return "mc", f"a full scan, since {asked} would not repay thinning and no index lies beside the mesh"
     return "thinning", f"{asked} repay thinning"
+
+
+def backend_for(job: Job, field_type: type, outlook: Outlook) -> tuple[str, str]:
+    """The backend of a job, and why it is this one."""
+    if any(isinstance(target.choice, Label) for target in job.targets):
+        return LABELS.name, "labels are asked for"
+    if job.backend:
+        return job.backend, "given"
+    if job.options.smooth:
+        return REFERENCE, "its surface is what is smoothed"
+    return default_backend(field_type, outlook)
 
 
 def prepare(field: Field, backend: str, options: Options, outlook: Outlook | None = None) -> Extract:

@@ -64,6 +64,7 @@ class Job:
     offset: the point that vertices are written about; a text is parsed.
     reference: set marching cubes beside each surface.
     require: names out of requirements.REQUIREMENTS; max_triangles: a further one.
+    together: all targets are parts of one output, which all of them name. colour: of what has no colour of its own.
     ambiguities: where the ambiguous faces go, for a job of one target.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
@@ -82,6 +83,8 @@ class Job:
     require: tuple[str, ...] = ()
     max_triangles: int | None = None
     ambiguities: Path | None = None
+    together: bool = False
+    colour: tuple[int, int, int] | None = None
     if_changed: bool = False
     force: bool = False
     refusal: str = ""

@@ -6,10 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.ambiguities import find_ambiguities
-from isocore.backends import BACKENDS, LABELS, Extract, Field, Outlook, default_backend, prepare
-from isocore.choices import Choice
+from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
-from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
@@ -18,8 +16,9 @@ from isocore.labels import Label
 from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
+from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
-from isocore.outputs import format_warnings, write_target
+from isocore.outputs import Sink, format_warnings
 from isocore.readers import read
 from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
@@ -34,11 +33,29 @@ from isocore.whole_file import whole_file
 from isocore.writers.ply import write_ply_points
 from isocore.writers.rounding import as_read, rounded
 
-REFERENCE = "mc"
-
 
 def convert(job: Job) -> Iterator[RunReport]:
     """Read and prepare once, then extract, measure and write each target; one report per target, failed ones too."""
+    sink = Sink(job)
+    runs = _converted(job, sink)
+    if not job.together:
+        yield from runs
+        return
+    waiting = list(runs)
+    timer = Timer()
+    try:
+        with timer("write"):
+            written = sink.finish()
+    except (IsocoreError, MemoryError, ValueError) as error:
+        for target in job.targets:
+            yield failed(job, target, error)
+    else:
+        for run in waiting:
+            yield run if run.status == "failed" else replace(run, written=written)
+
+
+def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
+    """The reports of all targets; sink: takes their surfaces."""
     forget_peak()
     timer, threads = Timer(), job.options.threads
     done = 0
@@ -51,7 +68,7 @@ def convert(job: Job) -> Iterator[RunReport]:
         known = FieldFacts.of(source, spread)
         labels = label_count(source, spread)
         outlook = _outlook(job)
-        backend, why = _backend(job, source, outlook)
+        backend, why = backend_for(job, type(source), outlook)
         with timer("prepare"):
             extract = prepare(source, backend, replace(job.options, normals=job.normals), outlook)
         reference = _ReferenceRuns(source, backend, job)
@@ -70,7 +87,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     if surface is not exact:
                         findings = remeasured(findings, source, chosen.isovalue, surface, job.options)
                 with timer("write"):
-                    written = write_target(surface, target, job)
+                    written = sink.write(surface, target)
                     _write_ambiguities(source, chosen.isovalue, job, offset)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
@@ -95,7 +112,7 @@ def convert(job: Job) -> Iterator[RunReport]:
                     backend=backend,
                     backend_chosen=why,
                     surface=measured,
-                    findings=_named(findings, target.choice),
+                    findings=named(findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
@@ -167,25 +184,6 @@ def _outlook(job: Job) -> Outlook:
     except OSError:  # the source's name leaves no room for a longer one
         found = None
     return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
-
-
-def _backend(job: Job, source: Field, outlook: Outlook) -> tuple[str, str]:
-    """The method, and why this one."""
-    if any(isinstance(target.choice, Label) for target in job.targets):
-        return LABELS.name, "labels are asked for"
-    if job.backend:
-        return job.backend, "given"
-    if job.options.smooth:
-        return REFERENCE, "its surface is what is smoothed"
-    return default_backend(type(source), outlook)
-
-
-def _named(findings: Findings, choice: Choice) -> Findings:
-    """What is said of a label, with the name and the colour that the label was chosen with."""
-    if findings.label is None or not isinstance(choice, Label):
-        return findings
-    color = None if choice.colour is None else "#" + bytes(choice.colour).hex()
-    return replace(findings, label=replace(findings.label, name=choice.name, color=color))
 
 
 def _write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | None) -> None:

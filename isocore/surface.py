@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +19,20 @@ Point = tuple[float, float, float]
 _COARSEST_STEP = 2.0**-11
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """A run of a surface's vertices and of its triangles, which name no others: a label, or all there is.
+
+    vertices, triangles: how many. colour: red, green, blue, 0 to 255. label: its number in a label map.
+    """
+
+    name: str
+    vertices: int
+    triangles: int
+    colour: tuple[int, int, int] | None = None
+    label: int | None = None
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """A triangle mesh, counter-clockwise seen from outside.
@@ -27,6 +42,7 @@ class Surface:
     normals: (v, 3) float32, unit length, pointing outside; or None.
     space, unit: as in Volume.
     offset: the point of the world that vertices are measured from; None is its origin.
+    parts: what it is made of, one behind the other; () where nothing has a name or a colour.
     """
 
     vertices: npt.NDArray[Any]
@@ -35,6 +51,7 @@ class Surface:
     space: Space = "native"
     unit: str = ""
     offset: Point | None = None
+    parts: tuple[Part, ...] = ()
 
     def __post_init__(self) -> None:
         real = self.vertices.dtype.name in ("float32", "float64")
@@ -42,6 +59,9 @@ class Surface:
             raise ValueError("vertices must be (v, 3) float32 or float64")
         if self.triangles.ndim != 2 or self.triangles.shape[1] != 3 or self.triangles.dtype != np.int32:
             raise ValueError("triangles must be (t, 3) int32")
+        for count, rows in (("vertices", self.vertices), ("triangles", self.triangles)):
+            if self.parts and sum(getattr(part, count) for part in self.parts) != len(rows):
+                raise ValueError(f"the parts' {count} must add up to all")
         normals = self.normals
         if normals is not None and (normals.shape != self.vertices.shape or normals.dtype != np.float32):
             raise ValueError("normals must be (v, 3) float32")
@@ -74,6 +94,25 @@ class Surface:
             unit=self.unit if unit is None else unit,
             threads=threads,
         )
+
+
+def joined(surfaces: Sequence[Surface]) -> Surface:
+    """One surface of several, which share frame, unit and offset and each have parts. At least one."""
+    first = surfaces[0]
+    starts = np.cumsum([0, *(len(surface.vertices) for surface in surfaces[:-1])], dtype=np.int64)
+    if sum(len(surface.vertices) for surface in surfaces) > np.iinfo(np.int32).max:
+        raise ValueError("has more vertices than an int32 can name")
+    triangles = [surface.triangles + np.int32(start) for surface, start in zip(surfaces, starts, strict=True)]
+    normals = [surface.normals for surface in surfaces if surface.normals is not None]
+    return Surface(
+        np.concatenate([surface.vertices for surface in surfaces]),
+        np.concatenate(triangles),
+        np.concatenate(normals) if len(normals) == len(surfaces) else None,
+        first.space,
+        first.unit,
+        first.offset,
+        tuple(part for surface in surfaces for part in surface.parts),
+    )
 
 
 def place_fresh(

@@ -68,7 +68,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
     "outputs": NOUNS | {"report/sections", "whole_file", "writers"},
     "rounded_error": NOUNS | KERNELS,
-    "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file"},
+    "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),
     "batches/frames": set(),

@@ -46,6 +46,8 @@ def _changed(job: Job) -> Iterator[RunReport]:
             asked = replace(earlier.asked, source=str(job.source), output=str(target.output))  # as they are named now
             earlier = replace(earlier, asked=asked, status="skipped", message="up to date")
             skipped[target] = requirements_checked(earlier, job)
+    if job.together and left:  # one file, so all or nothing
+        left, skipped = list(job.targets), {}
     made = convert(replace(job, targets=tuple(left))) if left else iter(())
     for target in job.targets:
         if target in skipped:

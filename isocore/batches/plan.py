@@ -48,10 +48,12 @@ def plan(
     or each other; where names alone are the trouble the message says which would do.
     """
     asked = _Asked(choices, labels)
-    if naming.output is not None and (len(inputs) != 1 or len(choices) != 1):
+    if naming.output is not None and (len(inputs) != 1 or (len(choices) != 1 and labels is None)):
         raise OptionError(
             f"-o {naming.output}: takes one input and one isovalue, not {len(inputs)} and {len(choices)}; use -d"
         )
+    if naming.output is not None and labels is not None:
+        pattern = replace(pattern, together=True)
     patterns = [(item, one) for item in inputs for one in _per_volume(item, pattern, volumes)]
     jobs = [_job(item, asked, one, naming) for item, one in patterns]
     try:
@@ -118,7 +120,7 @@ def refuse_overwriting(jobs: Iterable[Job], *, written: Sequence[Named] = (), re
         for n, file in enumerate(files_of(job.source)):
             places.take(file, f"belongs to the input {job.source}" if n else "is also an input")
     for job in jobs:
-        for target in job.targets:
+        for target in job.targets[:1] if job.together else job.targets:
             taken = None if target.output == STDOUT else places.take(target.output, f"is the output of {job.source}")
             if taken is None:
                 continue
@@ -136,7 +138,7 @@ def refuse_overwriting(jobs: Iterable[Job], *, written: Sequence[Named] = (), re
 def _is_free(jobs: Iterable[Job], written: Sequence[Named], read: Sequence[Named]) -> bool:
     """Whether these jobs write over nothing."""
     jobs = list(jobs)
-    outputs = [target.output for job in jobs for target in job.targets]
+    outputs = [target.output for job in jobs for target in (job.targets[:1] if job.together else job.targets)]
     if len(set(outputs)) < len(outputs):
         return False
     try:

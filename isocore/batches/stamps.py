@@ -15,6 +15,7 @@ from typing import Any
 
 from isocore.errors import IsocoreError
 from isocore.job import STDOUT, Job, Target
+from isocore.labels import Label
 from isocore.readers import files_of
 from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.record import RunReport
@@ -47,12 +48,21 @@ class _Stamp:
     reference: bool
 
 
-def stamp_path(output: Path) -> Path:
-    """Where the stamp of an output lies: hidden, and named after it, by a hash where that would be too long."""
-    name = f".{output.name}.isocore"
+def stamp_path(output: Path, part: str = "") -> Path:
+    """Where the stamp of an output lies: hidden, and named after it, by a hash where that would be too long.
+
+    part: of several that are parts of the output, which one.
+    """
+    name = f".{output.name}{part}.isocore"
     if len(os.fsencode(name)) > _LONGEST_NAME:
-        name = f".{sha256(os.fsencode(output.name)).hexdigest()}.isocore"
+        name = f".{sha256(os.fsencode(output.name + part)).hexdigest()}.isocore"
     return output.with_name(name)
+
+
+def _stamp_path(job: Job, target: Target) -> Path:
+    """Where the stamp of a target lies; targets that share an output have one each."""
+    choice = target.choice
+    return stamp_path(target.output, f".{choice.value}" if job.together and isinstance(choice, Label) else "")
 
 
 def input_hash(source: Path) -> str:
@@ -92,7 +102,7 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
     if job.force:
         return "forced", None
     try:
-        stamp = _read_stamp(target.output)
+        stamp = _read_stamp(_stamp_path(job, target))
         if stamp.version != __version__:
             return "made by another version", None
         if stamp.options != options_hash(job, target):
@@ -116,9 +126,8 @@ def _is_as_made(path: Path, digest: str) -> bool:
     return (path.exists() and not path.is_file()) or bool(digest and path.is_file() and _file_hash(path) == digest)
 
 
-def _read_stamp(output: Path) -> _Stamp:
-    """The stamp of an output. Raises InputError for what is none, OSError where there is none."""
-    path = stamp_path(output)
+def _read_stamp(path: Path) -> _Stamp:
+    """The stamp in a file. Raises InputError for what is none, OSError where there is none."""
     if not path.is_file():
         raise FileNotFoundError(path)
     return built(_Stamp, parsed(path.read_bytes()), "", needed=("version",))
@@ -142,5 +151,5 @@ def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> No
         ambiguities=_file_hash(beside) if beside is not None and beside.is_file() else "",
         reference=job.reference,
     )
-    with whole_file(stamp_path(target.output)) as stream:
+    with whole_file(_stamp_path(job, target)) as stream:
         stream.write(json.dumps(asdict(stamp), allow_nan=False).encode())

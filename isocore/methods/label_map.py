@@ -5,17 +5,18 @@ Multiple material marching cubes: Hege, Seebass, Stalling, Zoeckler 1997; Wu, Su
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 
 import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
+from isocore.choices import Choice
 from isocore.errors import FieldError
 from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts, Outlook
 from isocore.job import Options
-from isocore.labels import MOST_LABELS
+from isocore.labels import MOST_LABELS, Label
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
@@ -60,6 +61,14 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
         return Extraction(surface, Findings(label=facts), census.warnings, seconds_normals=seconds)
 
     return extract
+
+
+def named(findings: Findings, choice: Choice) -> Findings:
+    """What is said of a label, with the name and the colour that the label was chosen with."""
+    if findings.label is None or not isinstance(choice, Label):
+        return findings
+    color = None if choice.colour is None else "#" + bytes(choice.colour).hex()
+    return replace(findings, label=replace(findings.label, name=choice.name, color=color))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,8 @@ import numpy.typing as npt
 
 #: Vertices (v, 3), float32 or float64 as in the file, finite; triangles (t, 3), each corner the number of a vertex.
 Mesh = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.int32]]
+
+_PLY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "int": "<i4"}
 
 
 def read_mesh(path: Path) -> Mesh | None:
@@ -22,7 +26,7 @@ def read_mesh(path: Path) -> Mesh | None:
     try:
         with np.errstate(all="ignore"):  # what comes of odd numbers is no surface
             return None if reader is None or not path.is_file() else _checked(*reader(path.read_bytes()))
-    except (OSError, ValueError, KeyError, IndexError, TypeError, OverflowError, MemoryError):
+    except (OSError, ValueError, KeyError, IndexError, TypeError, OverflowError, MemoryError, struct.error):
         return None
 
 
@@ -35,20 +39,46 @@ def _checked(vertices: npt.NDArray[np.floating[Any]], triangles: npt.NDArray[np.
 def _read_ply(data: bytes) -> Mesh:
     end = data.index(b"end_header\n") + len(b"end_header\n")
     counts: dict[str, int] = {}
-    columns: list[Any] = []
+    columns: dict[str, list[Any]] = {}
+    element = ""
     for line in data[:end].decode("ascii").splitlines():
         words = line.split()
         if words[0] == "element":
-            counts[words[1]] = int(words[2])
+            element = words[1]
+            counts[element], columns[element] = int(words[2]), []
         elif words[0] == "property" and words[1] != "list":
-            columns.append((words[2], {"float": "<f4", "double": "<f8"}[words[1]]))
-    rows = np.frombuffer(data, np.dtype(columns), counts["vertex"], end)
+            columns[element].append((words[2], _PLY_TYPES[words[1]]))
+    rows = np.frombuffer(data, np.dtype(columns["vertex"]), counts["vertex"], end)
     vertices = np.stack([rows[axis] for axis in "xyz"], axis=1)
-    face = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
+    face = np.dtype([("count", "u1"), ("corners", "<i4", 3), *columns["face"]])
     faces = np.frombuffer(data, face, counts["face"], end + rows.nbytes)
     if (faces["count"] != 3).any():
         raise ValueError("holds more than triangles")
     return vertices, faces["corners"].astype(np.int32)
+
+
+def _read_glb(data: bytes) -> Mesh:
+    magic, version, _, length, kind = struct.unpack_from("<5I", data)
+    if (magic, version, kind) != (0x46546C67, 2, 0x4E4F534A):
+        raise ValueError("is no glTF 2.0 file")
+    document, body = json.loads(data[20 : 20 + length]), data[20 + length + 8 :]
+
+    def array(number: int, dtype: str, columns: int) -> npt.NDArray[Any]:
+        accessor = document["accessors"][number]
+        at = document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+        return np.frombuffer(body, dtype, accessor["count"] * columns, at).reshape(-1, columns)
+
+    vertices, triangles, count = [np.empty((0, 3), np.float32)], [np.empty((0, 3), np.int32)], 0
+    for mesh in document.get("meshes", []):
+        (primitive,) = mesh["primitives"]
+        corners = array(primitive["indices"], "<u4", 1).reshape(-1, 3)
+        places = array(primitive["attributes"]["POSITION"], "<f4", 3)
+        if corners.size and int(corners.max()) >= len(places):
+            raise ValueError("a triangle names a vertex of another part")
+        vertices.append(places)
+        triangles.append((corners + count).astype(np.int32))
+        count += len(places)
+    return np.concatenate(vertices), np.concatenate(triangles)
 
 
 def _read_stl(data: bytes) -> Mesh:
@@ -69,4 +99,9 @@ def _read_obj(data: bytes) -> Mesh:
 
 
 #: suffix -> reader of a whole file's bytes: one for each of the writers.
-READ_BACK: dict[str, Callable[[bytes], Mesh]] = {".obj": _read_obj, ".ply": _read_ply, ".stl": _read_stl}
+READ_BACK: dict[str, Callable[[bytes], Mesh]] = {
+    ".glb": _read_glb,
+    ".obj": _read_obj,
+    ".ply": _read_ply,
+    ".stl": _read_stl,
+}

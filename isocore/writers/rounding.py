@@ -26,8 +26,8 @@ _SMALL_MOVE = 1e-3
 def rounded(surface: Surface, format: Format, threads: int = 1) -> tuple[Surface, tuple[str, ...]]:
     """The surface with its coordinates as `format` keeps them, and a warning where that moves vertices visibly.
 
-    PLY keeps float32 and float64, OBJ nine significant digits, STL float32. Raises OutputError where a coordinate lies
-    beyond what the format can say.
+    PLY keeps float32 and float64, OBJ nine significant digits, STL and GLB float32. Raises OutputError where a
+    coordinate lies beyond what the format can say.
     """
     round_ = _ROUNDING.get(format)
     if round_ is None or surface.vertices.dtype == np.float32 or not len(surface.vertices):
@@ -53,17 +53,18 @@ def as_read(surface: Surface, format: Format, threads: int = 1) -> Surface:
 def _float32(vertices: npt.NDArray[Any], threads: int) -> npt.NDArray[np.float32]:
     farthest = max(map(abs, _kernels.bounds(vertices)))
     if not farthest <= float(np.finfo(np.float32).max):
-        raise OutputError(f"STL keeps float32, which ends before coordinates of {farthest:.3g}; write PLY or OBJ")
+        raise OutputError(f"it keeps float32, which ends before coordinates of {farthest:.3g}; write PLY or OBJ")
     return vertices.astype(np.float32)
 
 
 #: format -> what it makes of float64 coordinates. PLY keeps them, and every format keeps float32.
 _ROUNDING: dict[str, Callable[[npt.NDArray[Any], int], npt.NDArray[Any]]] = {
     "stl": _float32,
+    "glb": _float32,
     "obj": _kernels.nine_digits,
 }
-_KEEPS = {"stl": "STL keeps float32 only", "obj": "OBJ keeps nine digits"}
-_INSTEAD = {"stl": "write PLY or OBJ", "obj": "write PLY, which keeps float64"}
+_KEEPS = {"stl": "STL keeps float32 only", "glb": "GLB keeps float32 only", "obj": "OBJ keeps nine digits"}
+_INSTEAD = {"stl": "write PLY or OBJ", "glb": "write PLY or OBJ", "obj": "write PLY, which keeps float64"}
 
 
 def _loss(surface: Surface, after: npt.NDArray[Any], format: Format, threads: int) -> tuple[str, ...]:

@@ -3,6 +3,8 @@
 // other epsilon in the kernels than the clamp below.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -70,13 +72,30 @@ double crossing(Sample a, Sample b, double isovalue) {
     return above < 1 - kClamp ? above : 1 - kClamp;
 }
 
+// As inside_corners_joined, for two inside corners and then two outside, of any finite size: the largest difference to the
+// isovalue is brought near 1.
+inline bool joined_in_another_scale(std::array<double, 4> corners, double isovalue) {
+    double largest = 0;
+    for (double& corner : corners) {
+        corner = corner / 4 - isovalue / 4;  // no difference of two doubles is too large for that
+        largest = std::max(largest, std::abs(corner));
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (double& corner : corners) corner = std::ldexp(corner, -exponent);
+    return corners[0] * corners[1] >= corners[2] * corners[3];
+}
+
 // The asymptotic decider (Nielson, Hamann 1991) on a face whose diagonal corners `in0`, `in1` are inside and
 // `out0`, `out1` outside: are the inside corners joined across the face? They are iff the bilinear saddle is not
 // below the isovalue, which for this sign pattern is a comparison of two products. Symmetric in its corners, so both
 // cells of a face agree. Corners with a non-finite value keep the inside corners apart.
 inline bool inside_corners_joined(double in0, double in1, double out0, double out1, double isovalue) {
     if (!(std::isfinite(in0) && std::isfinite(in1) && std::isfinite(out0) && std::isfinite(out1))) return false;
-    return (in0 - isovalue) * (in1 - isovalue) >= (out0 - isovalue) * (out1 - isovalue);
+    const double inner = (in0 - isovalue) * (in1 - isovalue), outer = (out0 - isovalue) * (out1 - isovalue);
+    // What lies beyond a double's largest or below its smallest numbers is compared in another scale.
+    if (inner + outer < 1e300 && (inner > 1e-290 || outer > 1e-290)) return inner >= outer;
+    return joined_in_another_scale({in0, in1, out0, out1}, isovalue);
 }
 
 }  // namespace isocore

@@ -1,0 +1,114 @@
+"""GLB, binary glTF 2.0: a node, a mesh and a material for every part; float32, coordinates and unit as they are.
+
+Khronos Group, "glTF 2.0 Specification", 2021: section 4 (binary container), 3.6 (accessors), 3.9 (materials).
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any, BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.errors import OutputError
+from isocore.surface import Part, Surface
+
+_MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
+_FLOAT, _UINT = 5126, 5125
+_VERTICES, _INDICES = 34962, 34963
+_GREY = (200, 200, 200)
+
+
+def write_glb(stream: BinaryIO, surface: Surface, threads: int) -> None:
+    """Write every part that has triangles as a node with its name, its colour and, of label maps, its label."""
+    whole = Part(name="surface", vertices=len(surface.vertices), triangles=len(surface.triangles))
+    scene = _Scene()
+    vertex = triangle = 0
+    for part in surface.parts or (whole,):
+        if part.triangles:
+            scene.add(part, surface, slice(vertex, vertex + part.vertices), slice(triangle, triangle + part.triangles))
+        vertex, triangle = vertex + part.vertices, triangle + part.triangles
+    text = json.dumps(scene.document(surface), separators=(",", ":"), ensure_ascii=False).encode()
+    text += b" " * (-len(text) % 4)
+    length = 12 + 8 + len(text) + (8 + scene.bytes if scene.bytes else 0)
+    if length >= 2**32:
+        raise OutputError(f"GLB ends at 4 GiB, and this surface takes {length:,} bytes; write PLY")
+    stream.write(struct.pack("<3I", _MAGIC, 2, length) + struct.pack("<2I", len(text), _JSON) + text)
+    if scene.bytes:
+        stream.write(struct.pack("<2I", scene.bytes, _BIN))
+        for block in scene.blocks:
+            stream.write(block.data)
+
+
+class _Scene:
+    """What is known of the parts so far, and their arrays. All are of four-byte numbers, so that none needs padding."""
+
+    def __init__(self) -> None:
+        self.blocks: list[npt.NDArray[Any]] = []
+        self.bytes = 0
+        self._views: list[dict[str, Any]] = []
+        self._accessors: list[dict[str, Any]] = []
+        self._parts: list[Part] = []
+        self._meshes: list[dict[str, Any]] = []
+
+    def add(self, part: Part, surface: Surface, vertices: slice, triangles: slice) -> None:
+        """A part with its rows of the surface's vertices and triangles."""
+        places = surface.vertices[vertices].astype("<f4", copy=False)
+        attributes = {"POSITION": self._array(places, "VEC3", _VERTICES, bounded=True)}
+        if surface.normals is not None:
+            attributes["NORMAL"] = self._array(surface.normals[vertices].astype("<f4", copy=False), "VEC3", _VERTICES)
+        corners = (surface.triangles[triangles] - np.int32(vertices.start)).astype("<u4").reshape(-1)
+        indices = self._array(corners, "SCALAR", _INDICES)
+        primitive = {"attributes": attributes, "indices": indices, "material": len(self._parts)}
+        self._meshes.append({"name": part.name, "primitives": [primitive]})
+        self._parts.append(part)
+
+    def _array(self, values: npt.NDArray[Any], kind: str, target: int, *, bounded: bool = False) -> int:
+        block = np.ascontiguousarray(values)
+        self._views.append({"buffer": 0, "byteOffset": self.bytes, "byteLength": block.nbytes, "target": target})
+        accessor: dict[str, Any] = {
+            "bufferView": len(self._views) - 1,
+            "componentType": _UINT if target == _INDICES else _FLOAT,
+            "count": len(block),
+            "type": kind,
+        }
+        if bounded:
+            accessor |= {"min": block.min(axis=0).tolist(), "max": block.max(axis=0).tolist()}
+        self._accessors.append(accessor)
+        self.blocks.append(block)
+        self.bytes += block.nbytes
+        return len(self._accessors) - 1
+
+    def document(self, surface: Surface) -> dict[str, Any]:
+        """The JSON of the file; empty lists are left out, as the specification wants it."""
+        extras = {"unit": surface.unit, "space": surface.space, "offset": surface.offset}
+        lists = {
+            "nodes": [_node(part, n) for n, part in enumerate(self._parts)],
+            "meshes": self._meshes,
+            "materials": [_material(part) for part in self._parts],
+            "accessors": self._accessors,
+            "bufferViews": self._views,
+            "buffers": [{"byteLength": self.bytes}] if self.bytes else [],
+        }
+        scene: dict[str, Any] = {"extras": {key: value for key, value in extras.items() if value}}
+        if self._parts:
+            scene["nodes"] = list(range(len(self._parts)))
+        return {"asset": {"version": "2.0", "generator": "isocore"}, "scene": 0, "scenes": [scene]} | {
+            key: values for key, values in lists.items() if values
+        }
+
+
+def _node(part: Part, mesh: int) -> dict[str, Any]:
+    node: dict[str, Any] = {"name": part.name, "mesh": mesh}
+    return node if part.label is None else node | {"extras": {"label": part.label}}
+
+
+def _material(part: Part) -> dict[str, Any]:
+    """Colours are linear in glTF, and sRGB everywhere else."""
+    channels = [channel / 255 for channel in part.colour or _GREY]
+    linear = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in channels]
+    factor = [*(round(value, 6) for value in linear), 1.0]
+    surface = {"baseColorFactor": factor, "metallicFactor": 0.0, "roughnessFactor": 0.8}
+    return {"name": part.name, "pbrMetallicRoughness": surface}
