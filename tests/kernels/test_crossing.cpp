@@ -53,6 +53,21 @@ void a_saddle_on_the_isovalue_joins() {
     CHECK(!inside_corners_joined(1, 1, -2, -1, 0));
 }
 
+void a_face_is_joined_alike_at_every_scale() {
+    for (const double scale : {0x1p-1040, 0x1p-700, 0x1p-500, 1.0, 0x1p500, 0x1p700, 0x1p1020}) {
+        for (int in0 = 1; in0 < 4; ++in0) {
+            for (int in1 = 1; in1 < 4; ++in1) {
+                for (int out0 = -3; out0 < 0; ++out0) {
+                    const bool joined = in0 * in1 >= out0 * -2;
+                    CHECK(inside_corners_joined(in0 * scale, in1 * scale, out0 * scale, -2 * scale, 0) == joined);
+                    CHECK(inside_corners_joined((in0 + 4) * scale, (in1 + 4) * scale, (out0 + 4) * scale, 2 * scale,
+                                                4 * scale) == joined);
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 
 void test_crossing() {
@@ -61,4 +76,5 @@ void test_crossing() {
     what_is_not_finite_is_outside();
     a_crossing_stays_away_from_the_ends();
     a_saddle_on_the_isovalue_joins();
+    a_face_is_joined_alike_at_every_scale();
 }

@@ -72,12 +72,15 @@ double crossing(Sample a, Sample b, double isovalue) {
     return above < 1 - kClamp ? above : 1 - kClamp;
 }
 
-// As inside_corners_joined, for two inside corners and then two outside, of any finite size: the largest difference to the
-// isovalue is brought near 1.
+// As inside_corners_joined, for two inside corners and then two outside, of any finite size: the largest difference to
+// the isovalue is brought near 1.
 inline bool joined_in_another_scale(std::array<double, 4> corners, double isovalue) {
-    double largest = 0;
+    double largest = std::abs(isovalue);
+    for (const double corner : corners) largest = std::max(largest, std::abs(corner));
+    const double share = largest > 1e300 ? 0.25 : 1;  // no difference of two quarters is too large
+    largest = 0;
     for (double& corner : corners) {
-        corner = corner / 4 - isovalue / 4;  // no difference of two doubles is too large for that
+        corner = share * corner - share * isovalue;
         largest = std::max(largest, std::abs(corner));
     }
     int exponent = 0;
