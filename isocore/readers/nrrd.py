@@ -152,7 +152,7 @@ def _bytes_before(source: Packed, share_bytes: int) -> int:
         raise InputError(
             f"inflates to more than {most:,} bytes, of which its last {share_bytes:,} are samples; check its byte skip"
         )
-    return held - share_bytes
+    return max(held - share_bytes, 0)  # of a file that ends early it is told where it does
 
 
 def _skips(head: Head) -> tuple[int, int]:

@@ -45,4 +45,7 @@ def _opened(path: str, file: StoredFile, kind: str) -> ArrayReader:
         return ArrayReader(path, data, scan(path, data, kind))
     except UnusualLayout:
         data = plain(path, data)
+    try:
         return ArrayReader(path, data, scan(path, data, kind))
+    except UnusualLayout as unusual:  # tags among the numbers
+        raise InputError(f"{path}: {unusual}; write it again") from unusual

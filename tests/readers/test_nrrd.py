@@ -370,3 +370,14 @@ def test_pynrrd_s_own_files_are_read_alike(tmp_path: Path) -> None:
             path = tmp_path / f"{dtype}-{encoding}.nrrd"
             nrrd.write(str(path), ramp(dtype=dtype), {"encoding": encoding}, index_order="F")
             assert np.array_equal(volume_of(path).samples, nrrd.read(str(path), index_order="F")[0])
+
+
+@pytest.mark.parametrize("encoding", ["raw", "gzip", "bzip2"])
+def test_a_skip_to_the_last_samples_of_too_few_ends_early(tmp_path: Path, encoding: str) -> None:
+    """There is nothing before them."""
+    pack: Callable[[bytes], bytes] = {"raw": bytes, "gzip": gzip.compress, "bzip2": bz2.compress}[encoding]
+    path = tmp_path / "scan.nrrd"
+    head = f"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 9 9 9\nencoding: {encoding}\nbyte skip: -1\n\n"
+    path.write_bytes(head.encode() + pack(bytes(700)))
+    with pytest.raises(InputError, match=r"ends early \(700 of 729 bytes\); copy it again"):
+        read(path)

@@ -163,6 +163,15 @@ def test_a_word_among_the_numbers_is_refused(word, tmp_path):
     assert "array 'connectivity' holds" in refusal(path)
 
 
+def test_tags_among_the_numbers_are_refused(tmp_path):
+    """Comments may stand there, and elements may not."""
+    path = write(tmp_path / "a.vtu", GOOD)
+    text = path.read_text()
+    start = text.index(" ", text.index("\n", text.index('Name="connectivity"')) + 3)
+    path.write_text(f"{text[:start]}<b/>{text[start:]}")
+    assert refusal(path).endswith("array 'connectivity': text in several parts; write it again")
+
+
 @pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf, 1e101, -1e300])
 def test_coordinates_that_are_not_finite_or_have_no_volume_are_refused(number, tmp_path):
     """There is no place for such a point, or no product of three of its coordinates."""
