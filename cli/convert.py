@@ -174,6 +174,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         space=asked.space,
         offset=asked.about,
         reference=asked.reference,
+        self_intersections=asked.self_intersections,
         require=requirements,
         max_triangles=asked.max_triangles,
         if_changed=asked.if_changed or asked.force,

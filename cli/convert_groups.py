@@ -217,6 +217,11 @@ REPORT = (
         help="Run marching cubes too, to compare.",
     ),
     _report(
+        "--self-intersections/--no-self-intersections",
+        default=True,
+        help="Count the pairs of triangles that meet each other; default on.",
+    ),
+    _report(
         "--require",
         type=Words(REQUIREMENTS),
         metavar="LIST",

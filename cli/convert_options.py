@@ -61,6 +61,7 @@ class ConvertOptions:
     page_size: int
     as_json: bool
     reference: bool
+    self_intersections: bool
     require: str | None
     max_triangles: int | None
     quiet: bool

@@ -63,6 +63,7 @@ class Job:
     space: of the outputs, "native" for the file's own.
     offset: the point that vertices are written about; a text is parsed.
     reference: set marching cubes beside each surface.
+    self_intersections: count them; they are also counted where `require` names `simple`.
     require: names out of requirements.REQUIREMENTS; max_triangles: a further one.
     together: all targets are parts of one output, which all of them name. colour: of what has no colour of its own.
     ambiguities: where the ambiguous faces go, for a job of one target.
@@ -80,6 +81,7 @@ class Job:
     space: Space = "native"
     offset: About | None = None
     reference: bool = True
+    self_intersections: bool = True
     require: tuple[str, ...] = ()
     max_triangles: int | None = None
     ambiguities: Path | None = None
@@ -92,6 +94,11 @@ class Job:
     def __post_init__(self) -> None:
         if isinstance(self.offset, str):
             object.__setattr__(self, "offset", parse_about(self.offset))
+
+    @property
+    def counts_intersections(self) -> bool:
+        """Are self-intersections counted? Also where only a requirement asks for it."""
+        return self.self_intersections or "simple" in self.require
 
     @property
     def normals(self) -> bool:

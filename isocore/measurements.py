@@ -26,6 +26,8 @@ class Measurements:
     volume: enclosed, positive when normals point outside; None unless watertight.
     bounds: lowest and highest corner of the box around all vertices; None where there is none.
     degenerate: triangles with a repeated corner or an area of exactly zero.
+    self_intersections: pairs of triangles that meet beyond the corner or edge they share; None where they were not
+        counted. Exact; to touch is to meet, and triangles without area meet nothing.
     """
 
     triangles: int
@@ -42,15 +44,19 @@ class Measurements:
     volume: float | None
     bounds: tuple[tuple[float, float, float], tuple[float, float, float]] | None
     degenerate: int
+    self_intersections: int | None
     unit: str
 
 
-def measure(surface: Surface, threads: int = 1) -> Measurements:
+def measure(surface: Surface, threads: int = 1, *, self_intersections: bool = True) -> Measurements:
     """Measure `surface`. The result does not depend on `threads`.
+
+    self_intersections: whether to count them, which takes longer than everything else.
 
     Raises ValueError if a triangle names a vertex that does not exist.
     """
     measured = _kernels.measure(surface.vertices, surface.triangles, threads)
+    pairs = _kernels.self_intersections(surface.vertices, surface.triangles, threads) if self_intersections else None
     has_edges = measured.components > 0
     watertight = measured.boundary_edges == measured.nonmanifold_edges == measured.misoriented_edges == 0
     return Measurements(
@@ -68,5 +74,6 @@ def measure(surface: Surface, threads: int = 1) -> Measurements:
         volume=measured.volume if has_edges and watertight else None,
         bounds=(measured.bounds[:3], measured.bounds[3:]) if len(surface.vertices) else None,
         degenerate=measured.degenerate,
+        self_intersections=pairs,
         unit=surface.unit,
     )

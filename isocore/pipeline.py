@@ -82,7 +82,8 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                 with timer("measure"):
                     exact = moved_surface(found.surface, source, offset)
                     surface, losses = rounded(exact, job.format, threads)
-                    measured = measure(as_read(surface, job.format, threads), threads=threads)
+                    form = as_read(surface, job.format, threads)
+                    measured = measure(form, threads, self_intersections=job.counts_intersections)
                     findings = found.findings
                     if surface is not exact:
                         findings = remeasured(findings, source, chosen.isovalue, surface, job.options)
@@ -116,7 +117,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
-                del found, exact, surface
+                del found, exact, surface, form
                 yield requirements_checked(reference.compared(run), job)
             done += 1
     except (IsocoreError, MemoryError) as error:

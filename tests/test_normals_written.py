@@ -100,7 +100,7 @@ def test_normals_are_written_unless_they_are_declined(tmp_path, format_, asked, 
     """PLY as nx, ny, nz; OBJ as vn, one for each vertex."""
     scan, out = write_nifti(tmp_path / "ball.nii", ball()), tmp_path / f"out.{format_}"
     said = run(scan, "-i", 50, "-o", out, *asked)
-    assert "normals" not in said.output
+    assert "vertex normals" not in said.output
     head = out.read_bytes()
     assert (b"property float nx" in head or b"\nvn " in head) == there
     if there and format_ == "ply":
@@ -116,7 +116,7 @@ def test_stl_says_that_it_has_no_normals_where_they_are_asked_for(tmp_path):
     plain = run(scan, "-i", 50, "-o", tmp_path / "a.stl")
     asked = run(scan, "-i", 50, "-o", tmp_path / "b.stl", "--normals")
     assert plain.exit_code == asked.exit_code == 0
-    assert "normals" not in plain.output and "STL holds no vertex normals" in " ".join(asked.output.split())
+    assert "vertex normals" not in plain.output and "STL holds no vertex normals" in " ".join(asked.output.split())
     assert (tmp_path / "a.stl").read_bytes() == (tmp_path / "b.stl").read_bytes()
 
 
@@ -159,3 +159,13 @@ def test_normals_beside_a_value_that_is_no_number_are_still_unit(backend):
     surface = extract(meshes.with_values(mesh, values), -1.7, backend=backend, options=Options(normals=True))
     assert surface.normals is not None and len(surface.vertices) > 50
     assert np.abs(np.linalg.norm(surface.normals, axis=1) - 1).max() < 1e-6
+
+
+def test_a_surface_whose_self_intersections_were_not_counted_is_made_again_to_count_them(tmp_path: Path):
+    """Once; and the other way round what is counted stays."""
+    scan = write_nifti(tmp_path / "ball.nii", ball())
+    out = ("-o", tmp_path / "a.ply", "-i", 50, "--if-changed", "--json", "-q")
+    asked = (("--no-self-intersections",), (), (), ("--no-self-intersections",), ("--require", "simple"))
+    outputs = [run(scan, *out, *each).stdout for each in asked]
+    statuses = [text.split('"status": "')[1].split('"')[0] for text in outputs]
+    assert statuses == ["done", "done", "skipped", "skipped", "skipped"]

@@ -24,10 +24,10 @@ from isocore.version import __version__
 from isocore.whole_file import whole_file
 
 #: What of a job does not change what is written: where it comes from and goes, how it is judged, whether it is done.
-#: The last two do, and are asked about one by one; whatever else a job may be asked for counts.
+#: The last three change what else is made, and are asked about one by one; whatever else a job may be asked for counts.
 UNHASHED = frozenset(
-    ("source", "targets", "require", "max_triangles", "if_changed", "force", "refusal", "ambiguities", "reference")
-)
+    ("source", "targets", "require", "max_triangles", "if_changed", "force", "refusal")
+) | {"ambiguities", "reference", "self_intersections"}
 #: Bytes of a file's name beyond which file systems refuse it.
 _LONGEST_NAME = 255
 
@@ -114,6 +114,8 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
         if job.ambiguities is not None and not _is_as_made(job.ambiguities, stamp.ambiguities):
             return "no ambiguities yet, or changed", None
         run = run_from_dict(stamp.run, complete=True)
+        if job.counts_intersections and run.surface is not None and run.surface.self_intersections is None:
+            return "self-intersections not counted yet", None
         if run.written is None or _file_hash(target.output) != run.written.sha256:
             return "output changed", None
     except (IsocoreError, OSError):

@@ -15,7 +15,7 @@ _PARTS = {
     "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",
     " ": "range nonfinite ignored isovalue asked chosen backend backend_chosen",
     "surface": "triangles vertices components boundary_edges nonmanifold_edges nonmanifold_vertices euler watertight",
-    "surface ": "area volume degenerate",
+    "surface ": "area volume degenerate self_intersections",
     "reference": "name triangles vertices seconds",
     "ratio": "triangles seconds",
     "error": "max mean rms max_world mean_world rms_world",

@@ -11,6 +11,7 @@ void test_facets();
 void test_meeting();
 void test_polygons();
 void test_in_order();
+void test_intersections();
 void test_cell_loops();
 void test_cell_disks();
 void test_climbing();
@@ -29,6 +30,7 @@ int main() {
     test_meeting();
     test_polygons();
     test_in_order();
+    test_intersections();
     test_cell_loops();
     test_cell_disks();
     test_climbing();
