@@ -32,6 +32,10 @@ _SIGNS: dict[str, tuple[int, int, int]] = {"ras": (1, 1, 1), "lps": (-1, -1, 1),
 SAMPLE_TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 
 
+#: A volume is a product of three lengths, and has to be a number.
+FARTHEST = 1e100
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Volume:
     """Samples on a grid, and where that grid lies.
@@ -73,10 +77,9 @@ class Volume:
         affine = np.eye(4) if self.affine is None else np.array(self.affine, dtype=np.float64)
         if affine.shape != (4, 4) or not np.isfinite(affine).all():
             raise FieldError("the affine must be a finite 4x4 matrix")
-        with np.errstate(over="ignore"):
-            voxel = abs(np.linalg.det(affine[:3, :3]))
-        if not math.isfinite(voxel):
-            raise FieldError("the affine is too large to reckon with: a voxel has no finite volume")
+        if np.abs(affine).max() > FARTHEST:
+            raise FieldError(f"the affine is too large to reckon with: places lie beyond {FARTHEST:g}")
+        voxel = abs(np.linalg.det(affine[:3, :3]))
         if voxel < 1e-30:
             raise FieldError("the affine is singular: an axis has no length or two axes coincide")
         affine.flags.writeable = False

@@ -16,9 +16,7 @@ from isocore.readers.vtk_fields import FieldInfo, scalar
 from isocore.readers.vtk_ghosts import cells_at, ghost_cells, hidden_points
 from isocore.readers.vtk_polyhedra import POLYHEDRON, FaceLists, polyhedra
 from isocore.readers.vtk_types import FACETED
-
-#: A volume is a product of three lengths, and has to be a number.
-FARTHEST = 1e100
+from isocore.volume import FARTHEST
 
 
 @dataclass(frozen=True, slots=True)
