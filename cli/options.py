@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields
 from functools import wraps
@@ -12,12 +11,16 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 import click
 
 from isocore import choices
+from isocore.memory import processors
 
 from .groups import option_of
 from .values import Ignored, Numbers, Offset, Positive, VolumeChoice
 
 if TYPE_CHECKING:
     from isocore.readers.options import ReadOptions
+
+#: How many threads there are unless fewer are asked for.
+default_threads = processors
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -165,11 +168,6 @@ def with_all(command: F, options: Iterable[Callable[[F], F]]) -> F:
     for option in reversed(tuple(options)):
         command = option(command)
     return command
-
-
-def default_threads() -> int:
-    """The processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 #: Whether a file is there and may be read is found where it is read: one that may not be stops no others.

@@ -15,10 +15,12 @@ from typing import TYPE_CHECKING, Any
 from isocore.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from isocore.backends import BACKENDS, Backend, Extraction, extract
+    from isocore.api import extract
+    from isocore.backends import BACKENDS, Backend, Extraction
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError, InputError, IsocoreError, OptionError, OutputError
     from isocore.job import Job, Options, Target
+    from isocore.many import convert_files
     from isocore.measurements import Measurements, measure
     from isocore.pipeline import convert
     from isocore.readers import ReadOptions, read
@@ -47,6 +49,7 @@ __all__ = [
     "Target",
     "Volume",
     "convert",
+    "convert_files",
     "extract",
     "measure",
     "read",
@@ -54,10 +57,12 @@ __all__ = [
 ]
 
 _HOMES = {
-    "backends": ("BACKENDS", "Backend", "Extraction", "extract"),
+    "api": ("extract",),
+    "backends": ("BACKENDS", "Backend", "Extraction"),
     "cell_mesh": ("CellMesh",),
     "errors": ("FieldError", "InputError", "IsocoreError", "OptionError", "OutputError"),
     "job": ("Job", "Options", "Target"),
+    "many": ("convert_files",),
     "measurements": ("Measurements", "measure"),
     "pipeline": ("convert",),
     "readers": ("ReadOptions", "read"),

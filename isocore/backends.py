@@ -20,7 +20,6 @@ from isocore.methods.climbing import prepare_climbing
 from isocore.methods.label_map import prepare_labels
 from isocore.methods.marching_cubes import prepare_marching_cubes
 from isocore.methods.thinning import prepare_thinning
-from isocore.surface import Surface
 from isocore.volume import Volume
 
 __all__ = [
@@ -33,7 +32,6 @@ __all__ = [
     "Outlook",
     "check_options",
     "default_backend",
-    "extract",
     "prepare",
 ]
 
@@ -136,12 +134,6 @@ def prepare(field: Field, backend: str, options: Options, outlook: Outlook | Non
         raise OptionError(f"{backend}: does not take {kind}; choose one of {', '.join(able)}")
     check_options(backend, options)
     return row.prepare(field, options, outlook or Outlook())
-
-
-def extract(field: Field, isovalue: float, *, backend: str | None = None, options: Options | None = None) -> Surface:
-    """One surface of a volume or a mesh, by the named backend or the default one."""
-    outlook = Outlook(isovalues=1)
-    return prepare(field, backend or default_backend(type(field), outlook)[0], options or Options())(isovalue).surface
 
 
 def check_options(backend: str, options: Options) -> None:

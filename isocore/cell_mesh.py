@@ -86,6 +86,12 @@ class CellMesh:
         for array in (self.points, self.tets, self.hexes, self.values):
             array.flags.writeable = False
 
+    def __repr__(self) -> str:
+        """How large it is, and what its values are."""
+        cells = ", ".join(f"{len(c):,} {name}" for name, c in (("tets", self.tets), ("hexes", self.hexes)) if len(c))
+        values = f"{self.field_name} {self.values.dtype}".strip()
+        return f"CellMesh({len(self.points):,} points, {cells}, {values}{f', {self.unit}' if self.unit else ''})"
+
     @property
     def cells(self) -> int:
         """Cells that are contoured: tetrahedra and hexahedra."""

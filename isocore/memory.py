@@ -1,7 +1,8 @@
-"""How much memory a job took, will take, and how much there is."""
+"""How much memory a job took, will take, and how much there is; and how many processors."""
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -13,6 +14,11 @@ _CGROUP = Path("/sys/fs/cgroup")
 _BASE_BYTES = 60 << 20
 #: Samples, then the surface: of 8-bit noise it can take several times the samples.
 _PER_CONTENT_BYTE = 4
+
+
+def processors() -> int:
+    """The processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def forget_peak() -> None:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from isocore import _kernels
+from isocore import _kernels, exchange
 from isocore.volume import Space
+
+if TYPE_CHECKING:
+    import meshio
+    import pyvista
+    import trimesh
 
 Point = tuple[float, float, float]
 
@@ -71,6 +76,34 @@ class Surface:
                 array = np.ascontiguousarray(array)
                 array.flags.writeable = False
                 object.__setattr__(self, name, array)
+
+    def __repr__(self) -> str:
+        """How large it is, and what its coordinates mean."""
+        counts = f"{len(self.vertices):,} vertices, {len(self.triangles):,} triangles"
+        about = "" if self.offset is None else f", about {self.offset}"
+        place = ", ".join(filter(None, (self.space, self.unit)))
+        return f"Surface({counts}{'' if self.normals is None else ', normals'}, {place}{about})"
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """This surface as a trimesh.Trimesh, with its normals; needs `pip install trimesh`."""
+        return exchange.to_trimesh(self.world_vertices, self.triangles, self.normals, self._place)
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """This surface as a pyvista.PolyData, with its normals as point data "Normals"; needs `pip install pyvista`."""
+        return exchange.to_pyvista(self.world_vertices, self.triangles, self.normals, self._place)
+
+    def to_meshio(self) -> meshio.Mesh:
+        """This surface as a meshio.Mesh, with its normals as point data "Normals"."""
+        return exchange.to_meshio(self.world_vertices, self.triangles, self.normals, self._place)
+
+    @property
+    def world_vertices(self) -> npt.NDArray[Any]:
+        """(v, 3), world: `vertices` themselves, or a float64 copy of those that are measured from an offset."""
+        return self.vertices if self.offset is None else self.vertices + np.array(self.offset, dtype=np.float64)
+
+    @property
+    def _place(self) -> dict[str, str]:
+        return {"space": self.space, "unit": self.unit}
 
     def placed(
         self,

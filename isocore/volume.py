@@ -14,14 +14,16 @@ The conventions of the whole program stand here and nowhere else:
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, cast, get_args
 
 import numpy as np
 import numpy.typing as npt
 
+from isocore.arrays import samples_of
 from isocore.digits import exact
-from isocore.errors import FieldError
+from isocore.errors import FieldError, OptionError
 
 Space = Literal["ras", "lps", "las", "index", "native"]
 
@@ -59,6 +61,48 @@ class Volume:
     warnings: tuple[str, ...] = ()
     ignored: int = 0
     field_name: str = ""
+
+    @classmethod
+    def from_array(
+        cls,
+        samples: npt.ArrayLike,
+        *,
+        spacing: float | Sequence[float] | None = None,
+        origin: Sequence[float] | None = None,
+        affine: npt.ArrayLike | None = None,
+        space: str = "native",
+        unit: str = "",
+    ) -> Volume:
+        """A volume of an array indexed [i, j, k] = [x, y, z]; of one indexed [z, y, x] pass `array.T`.
+
+        samples: (nx, ny, nz), real numbers or bool of any width, order and byte order. In Fortran order (which a
+            transposed C array has) and one of SAMPLE_TYPES or bool they are not copied: the volume sees the array's
+            memory, which stays writeable for others. Else it holds a copy, int64 as int32 where it fits. What a
+            masked array masks is outside, as NaN is.
+        spacing: world units between samples, one number or one per axis; 1 by default.
+        origin: world coordinates (x, y, z) of the centre of sample [0, 0, 0]; 0 by default.
+        affine: (4, 4), index to world, in place of both.
+        space: what world means: ras, lps, las, index or native, in any case; unit: of the world, such as mm.
+
+        Raises FieldError for samples that cannot be contoured, OptionError for a place that makes no sense; the
+        message begins with the argument's name.
+        """
+        known = space.lower()
+        if known not in get_args(Space):
+            raise OptionError(f"space: {space!r} is none of {', '.join(get_args(Space))}")
+        if not unit.isprintable():
+            raise OptionError(f"unit: {unit!r} is no unit; pass mm or another word")
+        if affine is not None and (spacing is not None or origin is not None):
+            raise OptionError("affine: holds spacing and origin already; pass it alone")
+        taken, warnings = samples_of(samples)
+        place = _placed(spacing, origin) if affine is None else _matrix(affine)
+        return cls(taken, affine=place, space=cast(Space, known), unit=unit, warnings=warnings)
+
+    def __repr__(self) -> str:
+        """Its size and type, and where it lies."""
+        steps = f"{' x '.join(f'{step:.6g}' for step in self.spacing)} {self.unit}".rstrip()
+        scale = "" if (self.slope, self.intercept) == (1, 0) else f", x {self.slope:g} + {self.intercept:g}"
+        return f"Volume({_times(self.shape)} {self.samples.dtype}{scale}, {steps}, {self.space})"
 
     def __post_init__(self) -> None:
         samples = self.samples
@@ -131,6 +175,32 @@ class Volume:
     def scaled(self, stored: float) -> float:
         """A stored sample's value."""
         return self.slope * stored + self.intercept
+
+
+def _placed(spacing: float | Sequence[float] | None, origin: Sequence[float] | None) -> npt.NDArray[np.float64]:
+    """The affine of these steps and this place. Raises OptionError for what are none."""
+    affine = np.eye(4)
+    for name, given, default in (("spacing", spacing, 1.0), ("origin", origin, 0.0)):
+        try:
+            numbers = np.asarray((default,) * 3 if given is None else given, dtype=np.float64)
+            numbers = np.broadcast_to(numbers, (3,)) if name == "spacing" else numbers.reshape(3)
+        except (TypeError, ValueError):
+            numbers = np.full(3, np.nan)
+        if not np.isfinite(numbers).all() or (name == "spacing" and not (numbers > 0).all()):
+            kind = "above 0, or one for all axes" if name == "spacing" else "x, y and z"
+            raise OptionError(f"{name}: {given!r} are not three numbers {kind}")
+        affine[(range(3), range(3)) if name == "spacing" else (range(3), 3)] = numbers
+    return affine
+
+
+def _matrix(affine: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    try:
+        matrix = np.array(affine, dtype=np.float64)
+    except (TypeError, ValueError):
+        matrix = np.empty(0)
+    if matrix.shape != (4, 4):
+        raise OptionError("affine: needs four rows of four numbers, which take index (i, j, k, 1) to the world")
+    return matrix
 
 
 def _times(shape: tuple[int, ...]) -> str:

@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 from isocore.cli.convert import convert
 from small_files import ball, write_nifti
 
-from isocore.backends import Options, extract
+from isocore import Options, extract
 from isocore.cell_mesh import CellMesh
 from isocore.volume import Volume
 

@@ -2,33 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
+from isocore.arrays import contourable as contourable
 from isocore.errors import FieldError
-
-#: Types that convert below; all others of numpy's are kept or refused.
-_NARROWED = ("int64", "uint64", "float16")
-
-
-def contourable(samples: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], tuple[str, ...]]:
-    """samples in a type that kernels read, and what was lost on the way."""
-    name = samples.dtype.name
-    if name not in _NARROWED:
-        return samples, ()
-    if name == "float16":
-        return samples.astype(np.float32, order="F"), ()
-    lowest, highest = int(samples.min()), int(samples.max())
-    for narrow in (np.int32, np.uint32):
-        bounds = np.iinfo(narrow)
-        if bounds.min <= lowest and highest <= bounds.max:
-            return samples.astype(narrow, order="F"), ()
-    exact = max(-lowest, highest) <= 2**53
-    loss = "every one is kept exactly" if exact else "beyond 2^53 they are rounded; isovalues there are not exact"
-    warning = f"{name} samples from {lowest:,} to {highest:,} are contoured as float64: {loss}"
-    return samples.astype(np.float64, order="F"), (warning,)
 
 
 def from_float128(samples: npt.NDArray[np.void], order: str) -> tuple[npt.NDArray[np.float64], tuple[str, ...]]:

@@ -55,6 +55,11 @@ class RunReport:
         for name in ("warnings", "missed"):
             object.__setattr__(self, name, tuple(map(shortened, getattr(self, name))))
 
+    def __repr__(self) -> str:
+        """What became of it."""
+        what = self.message if self.status == "failed" else f"{self.triangles:,} triangles"
+        return f"RunReport({self.output or self.source}: {self.status}, {what})"
+
     @property
     def source(self) -> str:
         """The input, as it was named."""
@@ -85,6 +90,12 @@ class BatchReport:
     seconds: float = 0.0
     tool: dict[str, Any] = dataclasses.field(default_factory=lambda: tool())
     host: dict[str, Any] = dataclasses.field(default_factory=lambda: host())
+
+    def __repr__(self) -> str:
+        """How many outputs there are, and what became of them."""
+        totals = self.totals
+        parts = [f"{totals[status]} {status}" for status in ("done", "empty", "skipped", "failed") if totals[status]]
+        return f"BatchReport({', '.join(parts) or 'no output'}, {totals['triangles']:,} triangles)"
 
     @property
     def totals(self) -> dict[str, Any]:

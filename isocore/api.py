@@ -1,0 +1,135 @@
+"""What Python programs call for one surface of a field, with everything optional by its name.
+
+The command line's options have these names with hyphens; an error that the two share names the argument here.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Literal, SupportsFloat, TypeAlias
+
+from isocore.backends import default_backend, prepare
+from isocore.cell_mesh import CellMesh
+from isocore.choices import Choice, MaxError, Number, Voxels, parse_choice, spread
+from isocore.digits import exact
+from isocore.errors import IsocoreError, OptionError
+from isocore.extraction import Outlook
+from isocore.histogram import histogram
+from isocore.isovalue import choose
+from isocore.job import Options
+from isocore.surface import Surface
+from isocore.volume import Volume
+
+Isovalue: TypeAlias = SupportsFloat | str
+Name: TypeAlias = os.PathLike[str] | str
+Topology: TypeAlias = Literal["faces", "trilinear"]
+
+_OPTION = re.compile(r"(?<![\w-])--?([a-z]+(?:-[a-z]+)*)\b")
+_SHORT = {"i": "isovalue", "b": "backend", "d": "output_dir", "f": "format"}
+
+
+def extract(
+    field: Volume | CellMesh,
+    isovalue: Isovalue = "auto",
+    *,
+    backend: str | None = None,
+    max_error: float | str | None = None,
+    block_size: int | None = None,
+    topology: Topology | None = None,
+    smooth: int | None = None,
+    cap: bool = False,
+    normals: bool = False,
+    threads: int = 1,
+    options: Options | None = None,
+) -> Surface:
+    """One surface of a volume or a mesh.
+
+    isovalue: a number, or a text as the command line takes it: "otsu", "p90" (a percentile), "auto".
+    backend: "asc", "thinning" or "mc"; None is the default of the field.
+    max_error: asc, how far marching cubes' vertices may lie from the surface: voxels (0.25), or a text as "0.3mm".
+    block_size: asc, cells along the edge of the largest box. topology: mc, as in Options.
+    smooth: rounds of smoothing, in which no sample changes sides; of a volume, by mc.
+    cap: close the surface at the volume's border. normals: compute vertex normals.
+    threads: at least 1; the surface is the same for any number.
+    options: all of these in one object; then they are not looked at.
+
+    Raises OptionError for an argument that makes no sense, FieldError for a field that has no such isovalue.
+    """
+    if not isinstance(field, (Volume, CellMesh)):
+        kind = type(field).__name__
+        raise OptionError(f"field: is a {kind}, not a Volume or CellMesh; see Volume.from_array and read")
+    with arguments_named():
+        asked = options or options_of(threads, cap, normals, block_size, max_error, topology, smooth)
+        outlook = Outlook(isovalues=1, named=backend is not None)
+        default = "mc" if asked.smooth else default_backend(type(field), outlook)[0]
+        extract_ = prepare(field, backend or default, asked, outlook)
+        choice = parse_choice(isovalue) if isinstance(isovalue, str) else choices_of(isovalue)[0]
+        if isinstance(choice, Number):
+            return extract_(choice.value).surface
+        return extract_(choose(choice, histogram(field, threads=asked.threads)).isovalue).surface
+
+
+def choices_of(isovalue: Isovalue) -> tuple[Choice, ...]:
+    """The choices behind one isovalue: a text may be several."""
+    if isinstance(isovalue, str):
+        return spread(isovalue)
+    try:
+        number = float(isovalue)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise OptionError(f"isovalue: {isovalue!r} is no finite number; pass one, or a text as 'otsu' or 'p90'")
+    return (Number(number, exact(number)),)
+
+
+def options_of(
+    threads: int,
+    cap: bool,
+    normals: bool | None,
+    block_size: int | None,
+    max_error: float | str | None,
+    topology: Topology | None,
+    smooth: int | None,
+) -> Options:
+    """The options as the methods know them."""
+    if smooth is not None and not (isinstance(smooth, int) and smooth >= 0):
+        raise OptionError(f"smooth: {smooth!r} is no number of rounds; pass a whole number from 0 on")
+    return Options(
+        threads=at_least_one("threads", threads),
+        cap=cap,
+        normals=normals,
+        block_size=block_size,
+        max_error=_bound(max_error),
+        topology=topology,
+        smooth=smooth or None,
+    )
+
+
+def _bound(max_error: float | str | None) -> MaxError | None:
+    """The bound as the methods know it; Options parses a text."""
+    if max_error is None or isinstance(max_error, str):
+        return max_error  # type: ignore[return-value]  # Options parses a text
+    if not 0 <= float(max_error) < math.inf:
+        raise OptionError(f"max_error: {max_error!r} is no length; pass voxels as 0.25, a text as '0.3mm', or 'none'")
+    return Voxels(float(max_error), exact(float(max_error)))
+
+
+def at_least_one(name: str, number: int) -> int:
+    """The number, where it is one from 1 on."""
+    if not isinstance(number, int) or number < 1:
+        raise OptionError(f"{name}: {number!r} is no whole number from 1 on")
+    return number
+
+
+@contextmanager
+def arguments_named() -> Iterator[None]:
+    """Errors name Python's argument where they name an option of the command line."""
+    try:
+        yield
+    except IsocoreError as error:
+        text = _OPTION.sub(lambda match: _SHORT.get(match[1], match[1]).replace("-", "_"), str(error))
+        raise type(error)(text) from error

@@ -1,0 +1,149 @@
+"""What Python programs call for a batch of files: as `isocore convert`, with the options as arguments."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any, Literal, SupportsFloat, TypeAlias
+
+from isocore.api import Isovalue, Topology, arguments_named, at_least_one, choices_of, options_of
+from isocore.backends import check_options
+from isocore.batches.label_targets import LabelRequest
+from isocore.batches.plan import Naming, check_template, find_inputs, plan
+from isocore.batches.run import Batch, run_jobs
+from isocore.choices import Auto, Format, distinct
+from isocore.errors import OptionError
+from isocore.job import Job, Options
+from isocore.labels import parse_labels
+from isocore.memory import free_bytes, processors
+from isocore.readers.options import ReadOptions
+from isocore.report import BatchReport, RunReport, renderer_for, save_report
+from isocore.volume import Space
+
+Name: TypeAlias = os.PathLike[str] | str
+
+
+def convert_files(
+    inputs: Name | Iterable[Name],
+    output_dir: Name | None = None,
+    *,
+    isovalues: Isovalue | Iterable[Isovalue] = "auto",
+    labels: str | None = None,
+    background: int = 0,
+    format: Format = "ply",
+    name: str | None = None,
+    backend: str | None = None,
+    space: Space = "native",
+    volume: int | Literal["all"] | None = None,
+    max_error: float | str | None = None,
+    block_size: int | None = None,
+    topology: Topology | None = None,
+    smooth: int | None = None,
+    cap: bool = False,
+    normals: bool | None = None,
+    threads: int | None = None,
+    options: Options | None = None,
+    read_options: ReadOptions | None = None,
+    reference: bool = True,
+    require: Sequence[str] = (),
+    if_changed: bool = False,
+    jobs: int = 1,
+    timeout: float | None = None,
+    reports: Name | Iterable[Name] = (),
+    done: Callable[[RunReport], object] | None = None,
+) -> BatchReport:
+    """Convert files, and all that folders hold, as `isocore convert` does: what happens to one stops no others.
+
+    What is not said here means what the command line's option of this name means.
+
+    inputs: a file, a folder, or several. output_dir: where surfaces go; None is beside each input.
+    isovalues: one or several, as in `extract`; "100:400:4" are four. labels: "all" or a list as "1,5-9", for one
+        surface per label of label maps, in which background is none.
+    max_error to threads, options: as in `extract`; normals: None is yes where the format has them; threads: None
+        shares the processors among the inputs at once.
+    read_options: what files do not tell themselves; volume: which of a 4-D input, or "all".
+    jobs: inputs at once, each in a process of its own; timeout: seconds for each.
+    reports: files to write the report to, each in the format of its suffix.
+    done: called with the report of each output as soon as it is known.
+
+    Returns the report of each output in the order of the inputs: what failed has the status "failed" and a message.
+    Raises OptionError before any work for what makes no sense, OutputError where a report cannot be written.
+    """
+    start = perf_counter()
+    saved = [Path(path) for path in _several(reports)]
+    with arguments_named():
+        at_once = at_least_one("jobs", jobs)
+        share = max(1, processors() // at_once) if threads is None else threads
+        pattern = Job(
+            source=Path(),
+            targets=(),
+            format=format,
+            backend=backend,
+            options=options or options_of(share, cap, normals, block_size, max_error, topology, smooth),
+            read_options=_reading(read_options, volume),
+            space=space,
+            reference=reference,
+            require=tuple(require),
+            if_changed=if_changed,
+        )
+        naming = Naming(output_dir=None if output_dir is None else Path(output_dir), template=name)
+        wanted = None if labels is None else LabelRequest(labels=parse_labels(labels), background=background)
+        planned = _planned([Path(one) for one in _several(inputs)], isovalues, pattern, naming, volume, wanted, saved)
+        for path in saved:
+            renderer_for(path)
+    workers = 0 if len(planned) == 1 and timeout is None else min(at_once, len(planned))
+    batch = Batch(workers=workers, seconds_per_job=timeout, memory_bytes=free_bytes())
+    result = BatchReport(_run(planned, batch, done), seconds=perf_counter() - start)
+    for path in saved:
+        save_report(result, path)
+    return result
+
+
+def _planned(
+    inputs: list[Path],
+    isovalues: Isovalue | Iterable[Isovalue],
+    pattern: Job,
+    naming: Naming,
+    volume: int | str | None,
+    labels: LabelRequest | None,
+    reports: list[Path],
+) -> list[Job]:
+    """Everything that can be refused without opening a file, then the jobs."""
+    if not inputs:
+        raise OptionError("inputs: names no file; pass a path, or several")
+    if pattern.backend is not None:
+        check_options(pattern.backend, pattern.options)
+    check_template(naming.template or "")
+    choices = distinct(choice for one in _several(isovalues) for choice in choices_of(one))
+    if labels is not None:
+        if choices != (Auto(),) or pattern.backend is not None or pattern.options.cap:
+            raise OptionError(f"labels {labels.labels}: do not go with isovalues, backend or cap; leave those out")
+        pattern = replace(pattern, options=replace(pattern.options, background=labels.background))
+    written = [("reports", path) for path in reports]
+    return plan(find_inputs(inputs), choices, pattern, naming, volumes=volume, labels=labels, written=written)
+
+
+def _run(jobs: list[Job], batch: Batch, done: Callable[[RunReport], object] | None) -> tuple[RunReport, ...]:
+    """The reports, in the order of the jobs and their targets whatever is ready first."""
+    targets = [(job, target) for job in jobs for target in job.targets]
+    places = {(id(job), str(target.output)): place for place, (job, target) in enumerate(targets)}
+    runs: dict[int, RunReport] = {}
+    for job, run in run_jobs(jobs, batch):
+        runs[places[id(job), run.output]] = run
+        if done is not None:
+            done(run)
+    return tuple(run for _, run in sorted(runs.items()))
+
+
+def _several(given: Any) -> list[Any]:
+    """One or several, as a list."""
+    one = isinstance(given, (str, os.PathLike, SupportsFloat))
+    return [given] if one else list(given)
+
+
+def _reading(options: ReadOptions | None, volume: int | str | None) -> ReadOptions:
+    reading = options or ReadOptions()
+    return replace(reading, volume=volume) if isinstance(volume, int) else reading
