@@ -73,6 +73,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     _check_stdout(options)
 
     from isocore.batches.plan import Naming, check_template, find_inputs, plan  # late: readers bring numpy
+    from isocore.batches.steps import StepChoice
 
     labels = label_request(options)
     pattern = _pattern(options, format_, requirements)
@@ -92,6 +93,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
         pattern,
         naming,
         volumes=options.reading.volume,
+        steps=StepChoice(options.steps or (), options.times or ()),
         labels=labels,
         written=written,
         read=lists,

@@ -9,7 +9,7 @@ from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
-from .values import Colour, Isovalue, Jobs, LabelList, MaxErrorType, Memory, Words
+from .values import Colour, Isovalue, Jobs, LabelList, MaxErrorType, Memory, StepNumbers, Times, Words
 
 _input, _isovalue, _method, _output, _batch, _report = map(option_of, GROUPS)
 
@@ -18,6 +18,15 @@ INPUT = (
     _input("--files-from", type=PATH, metavar="FILE|-", help="Further inputs, one a line of FILE or of stdin (-)."),
     _input("-0", "--null", is_flag=True, help="Names in that file end in NUL, as find -print0 writes them."),
     reading_and_offset_options,
+    _input(
+        "--steps",
+        type=StepNumbers(),
+        metavar="A:B:C",
+        show_default="all",
+        help="Of a series: every C-th step from A to B, both included, counted from 0; -1 is the last. Also lists, "
+        "as 0,5,10:20.",
+    ),
+    _input("--times", type=Times(), metavar="LIST", show_default="all", help="Of a series: the steps of these times."),
 )
 
 ISOVALUE = (
@@ -121,7 +130,7 @@ OUTPUT = (
         metavar="TEMPLATE",
         show_default="{stem}, with _{isovalue} where there are several, or _{label_name}",
         help="Of the output, without suffix; also {name} {parent} {relpath} {isovalue} {label} {label_name} {backend} "
-        "{volume}.",
+        "{volume} {step} {time}.",
     ),
     _output(
         "--space",

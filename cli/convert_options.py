@@ -15,6 +15,7 @@ from isocore.labels import Labels
 
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, METHOD, OUTPUT, REPORT
 from .options import Reading, default_threads, with_all
+from .values import Range
 
 if TYPE_CHECKING:
     from isocore.volume import Space
@@ -28,6 +29,8 @@ class ConvertOptions:
     files_from: Path | None
     null: bool
     reading: Reading
+    steps: tuple[Range, ...]
+    times: tuple[float, ...]
     isovalues: tuple[tuple[Choice, ...], ...]
     labels: Labels | None
     background: int | None

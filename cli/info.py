@@ -89,6 +89,8 @@ def _line(key: str, value: Any, found: Description) -> str:
         from isocore.isovalue import pasted
 
         return " to ".join(pasted(end, found.spread) for end in value) if value else "no finite sample"
+    if key == "times":
+        return f"{exact(value[0])} to {exact(value[-1])}"
     if key == "labels":
         return f"{value:,} values, constant over regions: it looks like a label map"
     if key == "bounds":

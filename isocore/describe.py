@@ -14,7 +14,7 @@ from isocore.extrema import count_extrema
 from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram, histogram
 from isocore.isovalue import Chosen, suggestions
-from isocore.readers import ReadOptions, count_volumes, offered_fields, read
+from isocore.readers import ReadOptions, count_volumes, offered_fields, read, times_of
 from isocore.segmentation import label_count
 from isocore.volume import Volume
 
@@ -35,8 +35,11 @@ class Description:
 
 
 def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Description:
-    """Read the file and look at it. Where it holds several volumes or fields and none is chosen, the first."""
+    """Read the file and look at it. Where it holds several steps, volumes or fields and none is chosen, the first."""
     facts: dict[str, Any] = {}
+    if times := times_of(path):
+        options = replace(options, step=options.step or 0)
+        facts |= {"steps": len(times), "times": times, "step": options.step}
     if offered := offered_fields(path):
         options = _choose_field(offered, options, facts)
     volumes = count_volumes(path, options)

@@ -58,6 +58,7 @@ class Target:
 class Job:
     """What is asked of one file.
 
+    time: of the step of a series that `read_options` choose, for the record.
     format: of the outputs.
     backend: by name, or None for the default of the field.
     space: of the outputs, "native" for the file's own.
@@ -79,6 +80,7 @@ class Job:
     options: Options = field(default_factory=Options)
     read_options: ReadOptions = field(default_factory=ReadOptions)
     space: Space = "native"
+    time: float | None = None
     offset: About | None = None
     reference: bool = True
     self_intersections: bool = True

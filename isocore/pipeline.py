@@ -19,7 +19,7 @@ from isocore.methods.index_file import index_path
 from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
 from isocore.outputs import Sink, format_warnings
-from isocore.readers import read
+from isocore.readers import files_of, read
 from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
 from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
@@ -150,6 +150,8 @@ def _asked(job: Job, target: Target) -> Asked:
         output=str(target.output),
         asked=str(target.choice),
         volume=job.read_options.volume,
+        step=job.read_options.step,
+        time=job.time,
         options=Given(
             threads=options.threads,
             cap=options.cap,
@@ -179,7 +181,8 @@ def _read(job: Job) -> Field:
 
 
 def _outlook(job: Job) -> Outlook:
-    index = index_path(job.source)
+    step = files_of(job.source, job.read_options.step)[1:] if job.read_options.step is not None else ()
+    index = index_path(step[0] if len(step) == 1 else job.source)
     try:
         found = index if index.is_file() else None
     except OSError:  # the source's name leaves no room for a longer one

@@ -84,7 +84,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "batches/naming": BATCHED | {"batches/inputs"},
     "batches/label_targets": BATCHED | {"readers", "methods/label_map"},
     "batches/plan": BATCHED
-    | {"readers", "batches/inputs", "batches/label_targets", "batches/naming", "batches/places"},
+    | {"readers", "batches/inputs", "batches/label_targets", "batches/naming", "batches/places", "batches/steps"},
+    "batches/steps": {"digits", "errors"},
     "batches/one_job": BATCHED | {"readers", "memory", "pipeline", "batches/stamps"},
     "batches/dry_run": BATCHED | {"batches/one_job", "batches/stamps"},
     "batches/worker": BATCHED | {"batches/frames", "batches/one_job"},

@@ -15,7 +15,7 @@ def depfile_text(jobs: Iterable[Job]) -> str:
     for job in jobs:
         if job.refusal:
             continue
-        files = files_of(job.source)
+        files = files_of(job.source, job.read_options.step)
         outputs = [target.output for target in job.targets if target.output != STDOUT]
         if outputs:
             rules.append(f"{' '.join(map(_quoted, outputs))}: {' '.join(map(_quoted, files))}\n")

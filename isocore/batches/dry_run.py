@@ -15,7 +15,7 @@ def plan_lines(jobs: Sequence[Job]) -> Iterator[str]:
         if job.refusal:
             yield f"fail: {job.refusal}"
             continue
-        source_hash = stamps.input_hash(job.source) if job.if_changed else ""
+        source_hash = stamps.input_hash(job) if job.if_changed else ""
         for target in job.targets:
             reason = stamps.reason_to_run(job, target, source_hash)[0] if job.if_changed else "asked for"
             what = f"run ({reason})" if reason else "skip (up to date)"

@@ -10,12 +10,15 @@ from pathlib import Path
 
 from isocore.batches.inputs import Input
 from isocore.choices import Choice
+from isocore.digits import exact
 from isocore.errors import OptionError
 from isocore.job import Job
 from isocore.labels import Label
 
-NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume", "label", "label_name")
-#: How a volume's number may be written: in so many digits.
+_OF_LABELS = ("label", "label_name")
+NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume", "step", "time", *_OF_LABELS)
+#: What is a number, which may be written in so many digits.
+_NUMBERED = ("volume", "step")
 _DIGITS = re.compile(r"0?\d{1,2}d?|")
 
 
@@ -29,7 +32,7 @@ class Naming:
 
 
 class _NoVolume(str):
-    """Of a file with one volume: nothing, in whatever digits it is asked for."""
+    """Of a file with one volume, or without steps: nothing, in whatever digits it is asked for."""
 
     def __format__(self, spec: str) -> str:
         return ""
@@ -45,9 +48,9 @@ def check_template(template: str) -> None:
         if name not in NAME_FIELDS:
             known = " ".join(f"{{{field}}}" for field in NAME_FIELDS)
             raise OptionError(f"--name {template}: {{{name}}} is no field; known are {known}")
-        if conversion is not None or (spec and not (name == "volume" and _DIGITS.fullmatch(spec))):
+        if conversion is not None or (spec and not (name in _NUMBERED and _DIGITS.fullmatch(spec))):
             given = f"{{{name}{f'!{conversion}' if conversion is not None else ''}{f':{spec}' if spec else ''}}}"
-            advice = f"write {{{name}}}" + (", or {volume:03} for three digits" if name == "volume" else "")
+            advice = f"write {{{name}}}" + (f", or {{{name}:03}} for three digits" if name in _NUMBERED else "")
             raise OptionError(f"--name {template}: {given} asks for a format that names do not take; {advice}")
 
 
@@ -56,14 +59,15 @@ def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, seve
     if naming.output is not None:
         return naming.output
     volumes, labels = pattern.read_options.volume is not None, isinstance(choice, Label)
-    template = naming.template or default_template(several=several, volumes=volumes, labels=labels)
+    steps = pattern.read_options.step is not None
+    template = naming.template or default_template(several=several, volumes=volumes, labels=labels, steps=steps)
     return folder_of(item, naming, template) / f"{_filled(template, item, choice, pattern)}.{pattern.format}"
 
 
-def default_template(*, several: bool, volumes: bool, labels: bool = False) -> str:
+def default_template(*, several: bool, volumes: bool, labels: bool = False, steps: bool = False) -> str:
     """The name where none is asked for."""
     which = "_{label_name}" if labels else "_{isovalue}" * several
-    return "{stem}" + "_v{volume}" * volumes + which
+    return "{stem}" + "_{step}" * steps + "_v{volume}" * volumes + which
 
 
 def folder_of(item: Input, naming: Naming, template: str = "") -> Path:
@@ -78,7 +82,7 @@ def folder_of(item: Input, naming: Naming, template: str = "") -> Path:
 
 
 def _filled(template: str, item: Input, choice: Choice, pattern: Job) -> str:
-    volume = pattern.read_options.volume
+    volume, step = pattern.read_options.volume, pattern.read_options.step
     return template.format(
         stem=item.stem,
         name=item.path.name,
@@ -89,6 +93,8 @@ def _filled(template: str, item: Input, choice: Choice, pattern: Job) -> str:
         parent=item.parent,
         backend=pattern.backend or "auto",
         volume=_NoVolume() if volume is None else volume,
+        step=_NoVolume() if step is None else step,
+        time="" if pattern.time is None else exact(pattern.time),
     )
 
 
@@ -97,6 +103,6 @@ def other_templates(template: str) -> Iterator[str]:
     places = ("{stem}", "{relpath}", "{parent}_{stem}", "{name}", "{parent}_{name}", "{relpath}_{name}")
     kept = next((field for field in ("{stem}", "{name}", "{relpath}") if field in template), None)
     bases = [template.replace(kept, place, 1) if kept else f"{place}_{template}" for place in places]
-    for more in ("", "_{isovalue}", "_v{volume}", "_v{volume}_{isovalue}"):
+    for more in ("", "_{isovalue}", "_v{volume}", "_{step}", "_v{volume}_{isovalue}", "_{step}_{isovalue}"):
         if not any(field in template for field in re.findall(r"{\w+", more)):
             yield from (base + more for base in bases)

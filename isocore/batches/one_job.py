@@ -17,7 +17,7 @@ from isocore.report.record import RunReport
 def estimate(job: Job) -> int:
     """Bytes that a job may take at its peak."""
     copied = 2 if job.read_options.ignore else 1  # 8 bits become the 32 of a type that has NaN
-    return estimated_bytes(copied * content_bytes(job.source))
+    return estimated_bytes(copied * content_bytes(job.source, job.read_options.step))
 
 
 def guarded(job: Job) -> Iterator[RunReport]:
@@ -35,7 +35,7 @@ def guarded(job: Job) -> Iterator[RunReport]:
 
 def _changed(job: Job) -> Iterator[RunReport]:
     """As convert, but outputs that are up to date are skipped, with the record of the run that made them."""
-    source_hash = stamps.input_hash(job.source)
+    source_hash = stamps.input_hash(job)
     left: list[Target] = []
     skipped: dict[Target, RunReport] = {}
     for target in job.targets:

@@ -14,10 +14,11 @@ from isocore.batches.inputs import Input, find_inputs
 from isocore.batches.label_targets import LabelRequest, label_choices
 from isocore.batches.naming import Naming, check_template, default_template, folder_of, other_templates, output_of
 from isocore.batches.places import Places
+from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
 from isocore.errors import IsocoreError, OptionError
 from isocore.job import STDOUT, Job, Target
-from isocore.readers import ReadOptions, count_volumes, files_of
+from isocore.readers import ReadOptions, count_volumes, files_of, times_of
 
 #: An option that names a file, and the file.
 Named = tuple[str, Path]
@@ -34,6 +35,7 @@ def plan(
     naming: Naming,
     *,
     volumes: int | str | None = None,
+    steps: StepChoice = StepChoice(),  # noqa: B008
     labels: LabelRequest | None = None,
     written: Sequence[Named] = (),
     read: Sequence[Named] = (),
@@ -54,19 +56,37 @@ def plan(
         )
     if naming.output is not None and labels is not None:
         pattern = replace(pattern, together=True)
-    patterns = [(item, one) for item in inputs for one in _per_volume(item, pattern, volumes)]
+    patterns = [(item, one) for item in inputs for one in _per_step(item, pattern, volumes, steps)]
+    if naming.output is not None and len(patterns) > 1:
+        raise OptionError(f"-o {naming.output}: is one file, the input has {len(patterns):,} surfaces; use -d")
     jobs = [_job(item, asked, one, naming) for item, one in patterns]
     try:
         refuse_overwriting(jobs, written=written, read=read)
     except _Clash as clash:
         several, each = len(choices) > 1, any(one.read_options.volume is not None for _, one in patterns)
-        default = default_template(several=several, volumes=each, labels=labels is not None)
+        stepped = any(one.read_options.step is not None for _, one in patterns)
+        default = default_template(several=several, volumes=each, labels=labels is not None, steps=stepped)
         for template in other_templates(naming.template or default):
             other = [_job(item, asked, one, replace(naming, template=template)) for item, one in patterns]
             if _is_free(other, written, read):
                 raise OptionError(f"{clash}; tell them apart with --name {template}") from clash
         raise OptionError(f"{clash}; convert them one by one, each with another -d") from clash
     return jobs
+
+
+def _per_step(item: Input, pattern: Job, volumes: int | str | None, steps: StepChoice) -> list[Job]:
+    """One job per step of a series that is meant, and per volume; a series that cannot be read stays one job."""
+    try:
+        times = () if item.refusal else times_of(item.path)
+    except IsocoreError:
+        times = ()
+    if not times:
+        return _per_volume(item, pattern, volumes)
+    each = []
+    for step in steps.of(item.path, times):
+        one = replace(pattern, time=times[step], read_options=replace(pattern.read_options, step=step))
+        each += _per_volume(item, one, volumes)
+    return each
 
 
 def _per_volume(item: Input, pattern: Job, volumes: int | str | None) -> list[Job]:
@@ -86,13 +106,13 @@ class _Asked:
 
     def __init__(self, choices: tuple[Choice, ...], labels: LabelRequest | None) -> None:
         self._choices, self._labels = choices, labels
-        self._known: dict[tuple[Path, int | None], tuple[Choice, ...]] = {}
+        self._known: dict[tuple[Path, int | None, int | None], tuple[Choice, ...]] = {}
 
     def of(self, path: Path, options: ReadOptions) -> tuple[Choice, ...]:
         """The choices for one input; a label map is looked into once."""
         if self._labels is None:
             return self._choices
-        key = path, options.volume
+        key = path, options.volume, options.step
         if key not in self._known:
             self._known[key] = label_choices(path, self._labels, options)
         return self._known[key]

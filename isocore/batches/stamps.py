@@ -65,11 +65,17 @@ def _stamp_path(job: Job, target: Target) -> Path:
     return stamp_path(target.output, f".{choice.value}" if job.together and isinstance(choice, Label) else "")
 
 
-def input_hash(source: Path) -> str:
-    """Of the content of all files that the source consists of; "" where one cannot be read."""
+def input_hash(job: Job) -> str:
+    """Of the content of all files that the source consists of; "" where one cannot be read.
+
+    Of a series the files of the job's step alone: it may grow, and the earlier steps stay up to date.
+    """
     whole = sha256()
+    files = files_of(job.source, job.read_options.step)
+    if job.read_options.step is not None:
+        files = files[1:]
     try:
-        for path in files_of(source):
+        for path in files or (job.source,):
             whole.update(bytes.fromhex(_file_hash(path)))
     except OSError:
         return ""

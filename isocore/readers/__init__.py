@@ -48,15 +48,26 @@ def offered_fields(path: os.PathLike[str] | str) -> tuple[FieldInfo, ...]:
         return _format(path).fields(Path(path))
 
 
-def files_of(path: Path) -> tuple[Path, ...]:
-    """`path`, then the files beside it that belong to it: detached samples, a sidecar.
+def times_of(path: os.PathLike[str] | str) -> tuple[float, ...]:
+    """The times of a series' steps, ascending; () for a file that is none."""
+    with _named(path):
+        return _format(path).times(Path(path))
+
+
+def files_of(path: Path, step: int | None = None) -> tuple[Path, ...]:
+    """`path`, then the files beside it that belong to it: detached samples, a sidecar; of a series those of one step.
 
     Never an error: where the file cannot tell, `path` stands alone, and reading it will say why.
     """
     suffix = suffix_of(path)
     try:
         odd = path.exists() and not path.is_file()  # a pipe would be waited for
-        return (path,) if odd or suffix is None else (path, *BY_SUFFIX[suffix].files(path))
+        if odd or suffix is None:
+            return (path,)
+        form = BY_SUFFIX[suffix]
+        if step is not None and form.step_files is not None:
+            return (path, *form.step_files(path, step))
+        return (path, *form.files(path))
     except (IsocoreError, OSError, ValueError, OverflowError):
         return (path,)
 
@@ -72,9 +83,9 @@ def stranger_of(path: Path) -> str | None:
     return what_it_is(path, BY_SUFFIX, None) if suffix_of(path) is None else None
 
 
-def content_bytes(path: Path) -> int:
+def content_bytes(path: Path, step: int | None = None) -> int:
     """A guess at the bytes of an input with all that belongs to it, unpacked, by what costs no reading."""
-    return sum(unpacked_bytes(file) for file in files_of(path))
+    return sum(unpacked_bytes(file) for file in files_of(path, step))
 
 
 def _format(path: os.PathLike[str] | str) -> Format:
@@ -132,4 +143,5 @@ __all__ = [
     "read",
     "stranger_of",
     "suffix_of",
+    "times_of",
 ]

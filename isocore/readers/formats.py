@@ -25,6 +25,10 @@ def _one_volume(path: Path, options: ReadOptions) -> int:
     return 1
 
 
+def _no_steps(path: Path) -> tuple[float, ...]:
+    return ()
+
+
 def _nothing_beside(path: Path) -> tuple[Path, ...]:
     return ()
 
@@ -42,6 +46,7 @@ class Format:
     count: how many volumes a file holds, by its header; 1 for a mesh.
     files: those beside it that belong to it and exist, such as detached samples.
     fields: what a mesh offers to contour, fields of points before those of cells; () for a volume.
+    times: of a series' steps, ascending; () for a file that is none. step_files: those of one of its steps.
     lists: its files are fields of their own, which are not to be converted a second time.
     unsearched: suffixes a folder is not searched for, because another file leads to those.
     """
@@ -51,6 +56,8 @@ class Format:
     count: Callable[[Path, ReadOptions], int] = _one_volume
     files: Callable[[Path], tuple[Path, ...]] = _nothing_beside
     fields: Callable[[Path], tuple[FieldInfo, ...]] = _no_choice
+    times: Callable[[Path], tuple[float, ...]] = _no_steps
+    step_files: Callable[[Path, int], tuple[Path, ...]] | None = None
     lists: bool = False
     unsearched: tuple[str, ...] = ()
 
@@ -88,6 +95,16 @@ FORMATS = (
         read=_late("vti", "read_pvti"),
         files=_late("vti", "pvti_files"),
         fields=_late("vti", "pvti_fields"),
+        lists=True,
+    ),
+    Format(
+        suffixes=(".pvd", *(f"{suffix}.series" for suffix in (".vtu", ".pvtu", ".vti", ".pvti", ".vtk"))),
+        read=_late("series", "read_step"),
+        count=_late("series", "count_step"),
+        files=_late("series", "series_files"),
+        fields=_late("series", "series_fields"),
+        times=_late("series", "times"),
+        step_files=_late("series", "series_files"),
         lists=True,
     ),
 )

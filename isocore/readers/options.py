@@ -23,6 +23,7 @@ class ReadOptions:
     """Each reader takes what concerns its format and leaves the rest.
 
     volume: which volume of a 4-D file, counted from 0; None where the file holds one.
+    step: which step of a series, counted from 0 in the order of their times; None where the file is none.
     field, component: VTU, which point field and which part of it ("0", "1", ... or "magnitude").
     mesh: how cells hang together.
     ignore: values, scaled, whose samples count as outside, as NaN does.
@@ -30,6 +31,7 @@ class ReadOptions:
     """
 
     volume: int | None = None
+    step: int | None = None
     field: str | None = None
     component: str | None = None
     mesh: MeshOptions = MeshOptions()

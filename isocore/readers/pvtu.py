@@ -68,7 +68,7 @@ class PiecesSource:
 def read_pvtu(path: Path, options: ReadOptions) -> CellMesh:
     """The mesh of all pieces with the field that `options` choose."""
     with reading(path):
-        return read_pieces(PiecesSource(os.fspath(path), _pieces(path)), options)
+        return read_pieces(PiecesSource(os.fspath(path), pvtu_pieces(path)), options)
 
 
 def read_pieces(source: PiecesSource, options: ReadOptions) -> CellMesh:
@@ -82,20 +82,20 @@ def read_pieces(source: PiecesSource, options: ReadOptions) -> CellMesh:
 def pvtu_fields(path: Path) -> tuple[FieldInfo, ...]:
     """The fields that all pieces hold, those of points first."""
     with reading(path):
-        fields = PiecesSource(os.fspath(path), _pieces(path)).fields
+        fields = PiecesSource(os.fspath(path), pvtu_pieces(path)).fields
         return tuple(sorted(fields, key=lambda field: field.of != "points"))
 
 
 def pvtu_files(path: Path) -> tuple[Path, ...]:
     """The pieces that are there."""
-    return tuple(file for file in _pieces(path) if file.is_file())
+    return tuple(file for file in pvtu_pieces(path) if file.is_file())
 
 
 def _alike(field: FieldInfo, other: FieldInfo | None) -> bool:
     return other is not None and field.components == other.components
 
 
-def _pieces(path: Path) -> list[Path]:
+def pvtu_pieces(path: Path) -> list[Path]:
     """The files that a .pvtu names, in its order; InputError where it is none or names none."""
     tags = elements(path, "PUnstructuredGrid", "lists the pieces of an unstructured grid")
     found = [beside(path, attributes.get("Source", "").strip()) for tag, attributes in tags if tag == "Piece"]

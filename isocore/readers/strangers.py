@@ -71,7 +71,7 @@ STRANGERS = (
     Stranger("a list of the pieces of a VTK image", "", (".pvti",), _vtk(rb"PImageData")),
     Stranger("a list of the pieces of a VTK mesh", "", (".pvtu",),
              _vtk(b"PUnstructuredGrid")),
-    Stranger("a list of the steps of a VTK series", "give the .vtu files that it names", (".pvd", ".vtu.series"),
+    Stranger("a list of the steps of a VTK series", "", (".pvd",),
              _vtk(b"Collection")),
     Stranger("an unstructured grid of VTK", "", (".vtu",), _vtk(b"UnstructuredGrid")),
     Stranger("a structured grid of VTK", _TO_VTU, (".vts", ".pvts"), _vtk(b"P?StructuredGrid")),

@@ -29,9 +29,9 @@ class Comparison:
 def compared(old: BatchReport, new: BatchReport) -> Comparison:
     """Pair the runs that made the same surface, by ever fewer of the facts that say so; no run is paired twice.
 
-    What tells most is tried first: the same input, output, isovalue and volume. Then the output may lie elsewhere, then
-    the input, of which three, two and one of the last names must agree. Facts that two runs of a report share decide
-    nothing. Of two runs of one output in a report the later counts.
+    What tells most is tried first: the same input, output, isovalue, volume and step. Then the output may lie
+    elsewhere, then the input, of which three, two and one of the last names must agree. Facts that two runs of a
+    report share decide nothing. Of two runs of one output in a report the later counts.
     """
     earlier, later = _latest(old), _latest(new)
     found: dict[int, int] = {}
@@ -65,18 +65,18 @@ def _tail(names: int) -> Callable[[RunReport], Hashable]:
 
 def _surface(run: RunReport) -> tuple[Hashable, ...]:
     given = run.asked.options
-    return run.asked.asked, run.asked.volume, run.backend, None if given is None else given.format
+    return run.asked.asked, run.asked.volume, run.asked.step, run.backend, None if given is None else given.format
 
 
 _FACTS: tuple[Callable[[RunReport], Hashable], ...] = (
-    lambda run: (run.source, run.output, run.asked.asked, run.asked.volume),
+    lambda run: (run.source, run.output, run.asked.asked, run.asked.volume, run.asked.step),
     lambda run: (run.source, *_surface(run), PurePath(run.output).name),
     lambda run: (run.source, *_surface(run)),
-    lambda run: (run.source, run.asked.asked, run.asked.volume),
+    lambda run: (run.source, run.asked.asked, run.asked.volume, run.asked.step),
     _tail(3),
     _tail(2),
     _tail(1),
-    lambda run: (PurePath(run.source).name, run.asked.asked, run.asked.volume),
+    lambda run: (PurePath(run.source).name, run.asked.asked, run.asked.volume, run.asked.step),
 )
 
 

@@ -12,7 +12,8 @@ from isocore.report.record import BatchReport
 from isocore.report.texts import shown
 
 _PARTS = {
-    "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume field",
+    "": "source output status message missed warnings sha256 bytes kind shape dtype spacing space unit volume step time"
+    " field",
     " ": "range nonfinite ignored isovalue asked chosen backend backend_chosen",
     "surface": "triangles vertices components boundary_edges nonmanifold_edges nonmanifold_vertices euler watertight",
     "surface ": "area volume degenerate self_intersections",

@@ -30,13 +30,15 @@ class Given:
 class Asked:
     """What was asked for: the input and the output as they were named, the isovalue as it was written.
 
-    volume: which of several, from 0.
+    volume: which of several, from 0. step, time: of a series, the step from 0 and its time.
     """
 
     source: str
     output: str
     asked: str = ""
     volume: int | None = None
+    step: int | None = None
+    time: float | None = None
     options: Given | None = None
 
 

@@ -18,7 +18,7 @@ from isocore.readers.formats import BY_SUFFIX
 from isocore.volume import Volume
 
 #: Meshes, and files of one volume only, which have tests of their own.
-OF_VTK = {".vtu", ".pvti", ".pvtu", ".pvd", ".vtu.series", ".pvtu.series", ".vtk", ".vtk.series", ".vti", ".vti.series"}
+OF_VTK = {suffix for suffix in BY_SUFFIX if suffix.startswith((".vt", ".pv"))}
 VOLUMES = [suffix for suffix in BY_SUFFIX if suffix not in OF_VTK]
 WITH_HEADER = [suffix for suffix in VOLUMES if ".raw" not in suffix]
 
