@@ -98,13 +98,22 @@ def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> 
     tuples = values.reshape(-1, components)
     single = values.dtype.kind == "f" and values.dtype.itemsize == 4
     if component is None:
-        squares = tuples.astype(np.float64) ** 2
-        return np.asarray(np.sqrt(squares.sum(axis=1)), np.float32 if single else np.float64)
+        return magnitudes(tuples, np.float32 if single else np.float64)
     column = tuples[:, component]
     if column.dtype.kind == "f":
         return np.array(column, dtype=column.dtype.newbyteorder("="))
     largest = max(int(column.max()), -int(column.min())) if len(column) else 0
     return column.astype(np.float32 if largest <= _EXACT_IN_FLOAT32 else np.float64)
+
+
+def magnitudes(tuples: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """(n,) the lengths of (n, k) vectors; infinite where `dtype` has no such number."""
+    with np.errstate(over="ignore", under="ignore"):
+        lengths = np.sqrt((tuples.astype(np.float64) ** 2).sum(axis=1))
+        huge = np.flatnonzero(np.isinf(lengths))  # or their squares are
+        if len(huge):
+            lengths[huge] = np.hypot.reduce(tuples[huge].astype(np.float64), axis=1)
+        return np.asarray(lengths, dtype)
 
 
 def averaged(

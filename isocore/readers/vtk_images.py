@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from isocore.errors import FieldError, InputError
 from isocore.readers.sample_types import contourable
-from isocore.readers.vtk_fields import FieldInfo
+from isocore.readers.vtk_fields import FieldInfo, magnitudes
 from isocore.readers.vtk_ghosts import HIDDEN_CELL, HIDDEN_POINT
 from isocore.readers.vtu_layout import Extent
 from isocore.volume import Volume
@@ -78,8 +78,7 @@ def _part(path: str, part: Samples, field: FieldInfo, component: int | None) -> 
     tuples = part.values.reshape(-1, field.components)
     values: npt.NDArray[Any]
     if component is None:
-        squares = tuples.astype(np.float64) ** 2
-        values = np.sqrt(squares.sum(axis=1)).astype(np.float32 if part.values.dtype.itemsize == 4 else np.float64)
+        values = magnitudes(tuples, np.float32 if part.values.dtype.itemsize == 4 else np.float64)
     else:
         values = np.ascontiguousarray(tuples[:, component])
     if not values.dtype.isnative:

@@ -122,7 +122,8 @@ class ArrayReader:
         dtype = self._dtype(tag).newbyteorder("=")
         first, end = tag.text
         if dtype.kind == "f":
-            return floats(self.data, first, end).astype(dtype, copy=False)
+            with np.errstate(over="ignore"):  # what is no float32 becomes infinite
+                return floats(self.data, first, end).astype(dtype, copy=False)
         numbers = integers(self.data, first, end)
         limits = np.iinfo(dtype)
         if dtype.itemsize < 8 and numbers.size and (numbers.min() < limits.min or numbers.max() > limits.max):

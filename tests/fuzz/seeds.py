@@ -254,6 +254,60 @@ def cells() -> Iterator[Seed]:
             yield Seed({"j.vtu": _vtu(mesh, encoding)}, {"j.vtu": some(*mutators)})
 
 
+def _array(name: str, values: np.ndarray, encoding: vtu_files.Encoding) -> str:
+    kind = f"{ {'f': 'Float', 'i': 'Int', 'u': 'UInt'}[values.dtype.kind] }{8 * values.dtype.itemsize}"
+    text = " ".join(map(str, values.ravel().tolist()))
+    if encoding.format == "binary":
+        text = encoding.block(values, base64_text=True).decode()
+    components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    return f'<DataArray type="{kind}" Name="{name}"{components} format="{encoding.format}">{text}</DataArray>'
+
+
+def _vti(extent: str, encoding: vtu_files.Encoding, *, of_cells: bool) -> bytes:
+    """An image of 4 x 3 x 3 points from this extent's begin on, which a piece of another image may be."""
+    section, size = ("CellData", 12) if of_cells else ("PointData", 36)
+    values = _array("p", np.arange(float(size)), encoding)
+    values += _array("v", np.arange(2.0 * size).reshape(size, 2), encoding)
+    compressor = f' compressor="{vtu_files.COMPRESSORS[encoding.compressor][0]}"' if encoding.compressor else ""
+    return (
+        f'<?xml version="1.0"?>\n<VTKFile type="ImageData" version="1.0" byte_order="{encoding.byte_order}"'
+        f' header_type="{encoding.header}"{compressor}>\n<ImageData WholeExtent="{extent}" Origin="1 2 3"'
+        f' Spacing="1 0.5 2" Direction="0 -1 0 1 0 0 0 0 1">\n<Piece Extent="{extent}"><{section}>{values}</{section}>'
+        "</Piece></ImageData></VTKFile>"
+    ).encode()
+
+
+def images() -> Iterator[Seed]:
+    """Images in VTK's XML, whole and in two pieces that share a layer of points."""
+    ascii_, *others = vtu_files.every_encoding()
+    damage = some(damaged_xml, damaged_numbers, damaged_numbers, damaged_text, damaged_base64)
+    for encoding in (ascii_, *(one for one in others if one.format == "binary")):
+        for of_cells in (False, True):
+            yield Seed({"l.vti": _vti("0 3 0 2 0 2", encoding, of_cells=of_cells)}, {"l.vti": damage})
+    extents = ("0 3 0 2 0 2", "0 3 0 2 2 4")
+    listed = "".join(f'<Piece Extent="{extent}" Source="m{n}.vti"/>' for n, extent in enumerate(extents))
+    header = (
+        '<VTKFile type="PImageData" version="1.0" byte_order="LittleEndian">\n<PImageData WholeExtent="0 3 0 2 0 4"'
+        ' GhostLevel="0" Origin="1 2 3" Spacing="1 0.5 2">\n<PPointData><PDataArray type="Float64" Name="p"/>'
+        f"</PPointData>\n{listed}\n</PImageData></VTKFile>"
+    )
+    files = {f"m{n}.vti": _vti(extent, ascii_, of_cells=False) for n, extent in enumerate(extents)}
+    yield Seed({"m.pvti": header.encode(), **files}, {"m.pvti": damage, "m1.vti": damage})
+
+
+def pieces() -> Iterator[Seed]:
+    """A mesh in pieces, each a file of its own under one that lists them."""
+    damage = some(damaged_xml, damaged_xml, damaged_numbers, damaged_text)
+    for mesh in _meshes():
+        listed = "".join(f'<Piece Source="n{n}.vtu"/>\n' for n in range(2))
+        header = (
+            '<?xml version="1.0"?>\n<VTKFile type="PUnstructuredGrid" version="0.1" byte_order="LittleEndian">\n'
+            f'<PUnstructuredGrid GhostLevel="0">\n<PPoints/>\n{listed}</PUnstructuredGrid></VTKFile>'
+        )
+        part = _vtu(mesh, vtu_files.Encoding())
+        yield Seed({"n.pvtu": header.encode(), "n0.vtu": part, "n1.vtu": part}, {"n.pvtu": damage, "n1.vtu": damage})
+
+
 @cache
 def seeds_of(reader: str) -> tuple[Seed, ...]:
     """All seeds of one reader."""
@@ -262,5 +316,5 @@ def seeds_of(reader: str) -> tuple[Seed, ...]:
 
 READERS = {
     "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "raw": raw, "gzip": packed, "vtu": vtu,
-    "cells": cells,
+    "cells": cells, "vti": images, "pvtu": pieces,
 }  # fmt: skip

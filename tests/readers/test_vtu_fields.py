@@ -9,6 +9,7 @@ from vtu_files import Encoding, Mesh, write
 
 from isocore.errors import FieldError, OptionError
 from isocore.readers import ReadOptions, read
+from isocore.readers.vtk_fields import magnitudes
 
 POINTS, CELLS = block(np.full((2, 1, 1), "h"))
 N = len(POINTS)
@@ -139,3 +140,10 @@ def test_values_that_are_not_finite_are_kept_and_counted(tmp_path):
     mesh = read(write(tmp_path / "a.vtu", mesh_with(p=values)))
     np.testing.assert_array_equal(mesh.values, values)
     assert any(warning.startswith("2 of 12 values of p are not finite") for warning in mesh.warnings)
+
+
+def test_a_magnitude_is_found_also_where_its_square_is_no_number():
+    """1e200 has no square in float64, 1e300 none in float32: the first is kept, the second infinite."""
+    vectors = np.array([[3e200, 4e200], [3.0, 4.0], [1e300, np.nan], [-np.inf, 0.0], [1.7e308, 1.7e308]])
+    assert np.allclose(magnitudes(vectors, np.float64), [5e200, 5.0, np.nan, np.inf, np.inf], equal_nan=True)
+    assert np.allclose(magnitudes(vectors, np.float32), [np.inf, 5.0, np.nan, np.inf, np.inf], equal_nan=True)
