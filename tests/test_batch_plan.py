@@ -248,6 +248,17 @@ def test_links_are_followed_once_and_never_in_circles(here: Path) -> None:
     assert files_in(here / "made") == ["a.ply", "out/c.ply", "real/b.ply"]
 
 
+def test_a_name_is_an_input_once_and_every_link_is_one(here: Path) -> None:
+    """However often and however it is named; links to one file, or to nothing, are inputs of their own."""
+    (here / "s1" / "same.nii.gz").symlink_to("T1.nii.gz")
+    (here / "s1" / "lost1.nii").symlink_to("nowhere")
+    (here / "s1" / "lost2.nii").symlink_to("nowhere")
+    (here / "way").symlink_to("s1")
+    named = ["s1/T1.nii.gz", "s1", "./s1/T1.nii.gz", str(here / "s1"), "s2/../s1", "way", "way/T1.nii.gz"]
+    found = [str(item.path) for item in find_inputs(map(Path, named))]
+    assert found == ["s1/T1.nii.gz", "s1/lost1.nii", "s1/lost2.nii", "s1/same.nii.gz"]
+
+
 # Overwriting
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path, PurePath
 
-from isocore.batches.places import place_of
+from isocore.batches.places import place_of_name
 from isocore.errors import OptionError
 from isocore.readers import SEARCHED, files_of, listed_files, stranger_of, suffix_of
 
@@ -57,7 +57,10 @@ class Input:
 
 
 def find_inputs(names: Iterable[Path]) -> list[Input]:
-    """Files as they are named; folders searched for known suffixes, in sorted order. No file twice.
+    """Files as they are named; folders searched for known suffixes, in sorted order. No name twice.
+
+    Two names that are links to one file are two inputs: who asks for both, as stores that keep equal content once make
+    them, gets both.
 
     What another of them lists as a piece or a step is left to that one.
 
@@ -71,8 +74,8 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
         if not inside:
             raise OptionError(f"{name}: {_nothing_in(name)}")
         for item in inside:
-            found.setdefault(place_of(item.path), replace(item, common=common))
-    listed = {place_of(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
+            found.setdefault(place_of_name(item.path), replace(item, common=common))
+    listed = {place_of_name(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
     return [item for place, item in found.items() if place not in listed]
 
 
@@ -124,7 +127,7 @@ def _walk(root: Path, errors: list[OSError]) -> Iterator[Path]:
     while waiting:
         for here, folders, files in os.walk(waiting.popleft(), onerror=errors.append):
             folder = Path(here)
-            place = place_of(folder / "x")
+            place = place_of_name(folder / "file")
             if place in seen:
                 folders.clear()
                 continue

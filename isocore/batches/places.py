@@ -16,15 +16,14 @@ from typing import TypeAlias
 Place: TypeAlias = tuple[int, int, tuple[str, ...]]
 
 
-def place_of(path: Path) -> Place:
-    """What all spellings of a path have in common, but for the case of its last names."""
-    device, number, _, names = _found(path)
+def place_of_name(path: Path) -> Place:
+    """What all spellings of a name in its folder have in common; where the name is a link, it is not followed."""
+    device, number, _, names = _found(Path(os.path.realpath(path.parent)) / path.name)
     return device, number, names
 
 
-def _found(path: Path) -> tuple[int, int, Path, tuple[str, ...]]:
-    """Of a path with its links followed: the nearest folder that is there, and the names below it."""
-    real = Path(os.path.realpath(path))
+def _found(real: Path) -> tuple[int, int, Path, tuple[str, ...]]:
+    """Of a path without links: the nearest folder that is there, and the names below it."""
     folder, names = real.parent, [real.name]
     while True:
         try:
@@ -48,7 +47,7 @@ class Places:
         """Note the holder of a path's place; where it has one already, that one. Pipes and devices are nobody's."""
         if _is_stream(path):
             return None
-        device, number, folder, names = _found(path)
+        device, number, folder, names = _found(Path(os.path.realpath(path)))
         holders = self._holders.setdefault((device, number, tuple(map(_folded, names))), [])
         for others, other in holders:
             if others == names or ignores_case(folder):
