@@ -15,7 +15,7 @@ from isocore.errors import IsocoreError, OptionError, one_line, printable
 
 from .console import say, unarmed
 from .names import speak_any_name
-from .streams import open_closed_streams, settle_streams
+from .streams import CANNOT_WRITE, open_closed_streams, settle_streams, working_folder_is_there
 
 #: Each command is a file of its name, imported only when it is called or described.
 COMMANDS = {
@@ -123,7 +123,10 @@ def main() -> None:
 
 def _failure(error: Exception) -> int:
     """Say what went wrong in one line; the code to exit with."""
-    if isinstance(error, OSError) and error.filename is None:  # written by name, a file would have told its own
+    if isinstance(error, FileNotFoundError) and not working_folder_is_there():
+        say("isocore: the working folder is gone; change into one that is there")
+        return WRONG_COMMAND
+    if isinstance(error, OSError) and error.errno in CANNOT_WRITE:  # an output file's error has its name by now
         if not isinstance(error, BrokenPipeError):  # else whoever read our output has left
             say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
         return FAILED

@@ -170,5 +170,14 @@ def with_all(command: F, options: Iterable[Callable[[F], F]]) -> F:
     return command
 
 
-#: Whether a file is there and may be read is found where it is read: one that may not be stops no others.
-PATH = click.Path(path_type=Path, readable=False)
+class PathType(click.Path):
+    """A path, but not an empty one: that is what a variable without a value leaves, and means the working folder."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """The path. Whether it is there and may be read is found where it is read: one that is not stops no others."""
+        if value == "":
+            self.fail("is empty; name a file or a folder", parameter, context)
+        return super().convert(value, parameter, context)
+
+
+PATH = PathType(path_type=Path, readable=False)

@@ -1,10 +1,21 @@
-"""stdin, stdout and stderr, also where whoever started the program closed them, or where nothing can be written."""
+"""What a program is started with: stdin, stdout, stderr and a folder.
+
+Whoever starts it may have closed them, may have led them to a full disk, or may have deleted the folder.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from contextlib import suppress
+from pathlib import Path
+
+#: What a write to a stream may fail with.
+CANNOT_WRITE = frozenset(
+    getattr(errno, name, -1)
+    for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF", "EPIPE", "EAGAIN", "EINVAL", "ENXIO", "ECONNRESET")
+)
 
 
 def open_closed_streams() -> None:
@@ -29,6 +40,15 @@ def settle_streams() -> None:
             stream.flush()
         except (OSError, ValueError):
             _lead_nowhere(number, os.O_WRONLY)
+
+
+def working_folder_is_there() -> bool:
+    """Somebody may have deleted it, and then no relative path leads anywhere."""
+    try:
+        Path.cwd()
+    except OSError:
+        return False
+    return True
 
 
 def _lead_nowhere(number: int, flags: int) -> None:

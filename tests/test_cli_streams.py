@@ -209,3 +209,43 @@ def test_signals_that_come_twice_do_not_disturb_the_cleaning_up(here: Path) -> N
     made = run(here, "convert", "a.nii", "-i", 50, "-d", "out", "-q", "--report", "s.json", patch=patch)
     assert made.returncode == 129 and made.stderr == "isocore: hung up\n"
     assert list((here / "out").iterdir()) == [] and json.loads((here / "s.json").read_text())["outputs"] == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("convert", "", "-d", "out"),
+        ("convert", "a.nii", "-d", ""),
+        ("convert", "a.nii", "-d", "out", "--depfile", ""),
+        ("convert", "--files-from", "", "-d", "out"),
+        ("info", ""),
+        ("report", "r.json", "--to", ""),
+    ],
+)
+def test_an_empty_path_is_a_wrong_command(here: Path, arguments: tuple[str, ...]) -> None:
+    """A variable of a script that has no value does not mean the working folder."""
+    before = sorted(here.rglob("*"))
+    made = run(here, *arguments)
+    assert made.returncode == 2 and "is empty; name a file or a folder" in made.stderr
+    assert sorted(here.rglob("*")) == before
+
+
+@needs_posix
+def test_where_the_working_folder_is_gone_whole_paths_still_serve(here: Path) -> None:
+    """Others are a wrong command, in one line."""
+    patch = f"import os\nos.mkdir('gone')\nos.chdir('gone')\nos.rmdir({str(here / 'gone')!r})"
+    whole = ("convert", here / "a.nii", "-i", 50, "-q", "-d")
+    assert run(here, *whole, here / "out", patch=patch).returncode == 0 and (here / "out" / "a.ply").exists()
+    made = run(here, *whole, "out", patch=patch)
+    told = "isocore: the working folder is gone; change into one that is there\n"
+    assert (made.returncode, made.stderr) == (2, told)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="this system has no limit of a file's size")
+def test_a_limit_of_a_files_size_is_a_failed_row(here: Path) -> None:
+    """The signal that comes with it ends no process."""
+    patch = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))"
+    (here / "b.nii").write_bytes((here / "a.nii").read_bytes())
+    made = run(here, "convert", "a.nii", "b.nii", "-i", 50, "-d", "out", "-q", "-j", 2, patch=patch)
+    assert made.returncode == 1 and made.stderr.count("(File too large)") == 2 == made.stderr.count("\n")
+    assert list((here / "out").iterdir()) == []

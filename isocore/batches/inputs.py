@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path, PurePath
@@ -105,7 +106,9 @@ def _common(folders: list[Path]) -> Path | None:
 
 def _spelled_out(folder: Path) -> Path:
     """Absolute and without `..`; links stay as they are named."""
-    return Path(os.path.normpath(folder.absolute()))
+    with suppress(FileNotFoundError):  # the working folder is gone
+        folder = folder.absolute()
+    return Path(os.path.normpath(folder))
 
 
 def _search(root: Path) -> list[Input]:
