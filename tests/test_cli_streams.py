@@ -198,13 +198,12 @@ def test_a_program_that_is_to_outlive_its_terminal_does(here: Path) -> None:
 def test_signals_that_come_twice_do_not_disturb_the_cleaning_up(here: Path) -> None:
     """A connection that ends and a service that is stopped send several."""
     patch = (
-        "import os, signal\nfrom isocore import pipeline\nfrom isocore.whole_file import whole_file\n"
-        "def write(*a, **k):\n"
-        "    with whole_file('out/a.ply') as stream:\n"
-        "        stream.write(b'half')\n"
-        "        try: os.kill(os.getpid(), signal.SIGHUP); signal.pause()\n"
-        "        finally: os.kill(os.getpid(), signal.SIGTERM); os.kill(os.getpid(), signal.SIGHUP)\n"
-        "pipeline.write_target = write"
+        "import os, signal\nfrom isocore.writers import WRITERS\n"
+        "def write(stream, *a, **k):\n"
+        "    stream.write(b'half')\n"
+        "    try: os.kill(os.getpid(), signal.SIGHUP); signal.pause()\n"
+        "    finally: os.kill(os.getpid(), signal.SIGTERM); os.kill(os.getpid(), signal.SIGHUP)\n"
+        "WRITERS['.ply'] = write"
     )
     made = run(here, "convert", "a.nii", "-i", 50, "-d", "out", "-q", "--report", "s.json", patch=patch)
     assert made.returncode == 129 and made.stderr == "isocore: hung up\n"
