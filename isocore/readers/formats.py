@@ -89,6 +89,9 @@ FORMATS = (
         fields=_late("pvtu", "pvtu_fields"),
         lists=True,
     ),
+    Format(
+        suffixes=(".vtk",), read=_late("vtk_legacy", "read_legacy"), fields=_late("vtk_legacy", "legacy_fields")
+    ),
     Format(suffixes=(".vti",), read=_late("vti", "read_vti"), fields=_late("vti", "vti_fields")),
     Format(
         suffixes=(".pvti",),

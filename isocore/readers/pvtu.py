@@ -75,7 +75,7 @@ def read_pieces(source: PiecesSource, options: ReadOptions) -> CellMesh:
     """The mesh of some VTU files."""
     field = choose(source.path, source.fields, options)
     component = component_of(source.path, field, options.component)
-    mesh = assembled(source.path, source.pieces(field), field, component, options.mesh)
+    mesh = assembled(source.path, source.pieces(field), field, component, options.mesh, options.ignore)
     return replace(mesh, warnings=source.warnings + mesh.warnings)
 
 

@@ -79,7 +79,7 @@ STRANGERS = (
     Stranger("a multi-block data set of VTK", "give the .vtu files that it names", (".vtm", ".vtmb", ".vtpc"),
              _vtk(rb"vtk(MultiBlock|PartitionedDataSet)\w*")),
     Stranger("a VTK HDF file", _TO_VTU, (".vtkhdf",)),
-    Stranger("a legacy VTK file", _TO_VTU, (".vtk",), _starts(b"# vtk DataFile")),
+    Stranger("a legacy VTK file", "", (".vtk",), _starts(b"# vtk DataFile")),
     Stranger(
         "an HDF5 file, MINC 2 or NetCDF 4 for example", "convert it to NIfTI, with mnc2nii for example",
         (".h5", ".hdf5", ".hdf"), _starts(b"\x89HDF\r\n\x1a\n"),
