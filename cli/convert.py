@@ -159,6 +159,8 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         normals=asked.normals,
         block_size=int(asked.block_size) if asked.block_size else None,
         max_error=asked.max_error,
+        simplify=asked.simplify,
+        triangles=asked.triangles,
         topology=asked.topology,
         smooth=asked.smooth or None,
         background=asked.background,

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import click
 
-from isocore.choices import BACKEND_NAMES, BLOCK_SIZES, FORMATS, SPACES, TOPOLOGIES
+from isocore.choices import FORMATS, SPACES
 from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
-from .values import Colour, Isovalue, Jobs, LabelList, MaxErrorType, Memory, StepNumbers, Times, Words
+from .values import Colour, Isovalue, Jobs, LabelList, Memory, StepNumbers, Times, Words
 
-_input, _isovalue, _method, _output, _batch, _report = map(option_of, GROUPS)
+_input, _isovalue, _, _output, _batch, _report = map(option_of, GROUPS)
 
 INPUT = (
     click.argument("inputs", nargs=-1, type=PATH, metavar="INPUT..."),
@@ -65,47 +65,6 @@ LABELS = (
         show_default="names inside the file",
         help="With --labels: names and colours, as FreeSurfer, ITK-SNAP and Slicer write them, a .tsv (BIDS) or .csv.",
     ),
-)
-
-METHOD = (
-    _method(
-        "-b",
-        "--backend",
-        type=click.Choice(BACKEND_NAMES, case_sensitive=False),
-        default="auto",
-        show_default=True,
-        help="asc: few triangles, volumes. mc: marching cubes or tetrahedra. thinning: many isovalues of a mesh. "
-        "auto: asc for volumes; for meshes thinning where its index lies beside or it repays itself, else mc.",
-    ),
-    _method(
-        "--max-error",
-        type=MaxErrorType(),
-        metavar="E",
-        show_default="0.5",
-        help="asc: how far marching cubes' vertices may lie from the surface, in voxels (0.5), in world units "
-        "(0.3mm), or none.",
-    ),
-    _method(
-        "--block-size",
-        type=click.Choice([str(size) for size in BLOCK_SIZES]),
-        show_default="16",
-        help="asc: cells along the edge of the largest box.",
-    ),
-    _method(
-        "--topology",
-        type=click.Choice(TOPOLOGIES, case_sensitive=False),
-        show_default="faces",
-        help="mc: two loops in a cell are two disks (faces), or a tube where the trilinear function says so.",
-    ),
-    _method(
-        "--smooth",
-        type=click.IntRange(0, 1000),
-        metavar="N",
-        show_default="0",
-        help="Rounds of smoothing, 20 for a mask or labels: vertices slide along their grid edges, so that no sample "
-        "changes sides. Of volumes, by mc.",
-    ),
-    _method("--cap/--no-cap", show_default=True, help="Close the surface at the volume's border."),
 )
 
 OUTPUT = (

@@ -13,7 +13,8 @@ import click
 from isocore.choices import About, Choice, Format, MaxError
 from isocore.labels import Labels
 
-from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, METHOD, OUTPUT, REPORT
+from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
+from .convert_method import METHOD
 from .options import Reading, default_threads, with_all
 from .values import Range
 
@@ -37,6 +38,8 @@ class ConvertOptions:
     label_table: Path | None
     backend: str
     max_error: MaxError | None
+    simplify: bool | None
+    triangles: int | None
     block_size: str | None
     topology: str | None
     smooth: int | None

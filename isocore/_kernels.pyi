@@ -74,13 +74,13 @@ def sample_ranges(samples: _Samples, threads: int = 1) -> npt.NDArray[Any]: ...
 class SimplifiedMesh(NamedTuple):
     vertices: _Real  # some of those that came in, in their order
     triangles: _Int32
+    kept: _Int32  # of each vertex: its number among those that came in
     collapses: int
     refused: tuple[int, int, int, int, int]  # by link, shape, outward, back, crossing
     unproved: int  # triangles that may lie further from the reference than the bound
-    error_max: float  # from the reference's vertices to the surface, and their sum, and that of their squares
-    error_sum: float
-    error_squares: float
-    back_max: float  # no point of the surface lies further from the reference
+    error: tuple[float, float, float]  # from the reference's vertices to the surface: largest, mean, root mean square
+    error_other: tuple[float, float, float]  # the same, in coordinates times `other`
+    back_max: float  # no point of the surface, but for those triangles, lies further from the reference
 
 def simplify(
     vertices: _Real,
@@ -89,6 +89,7 @@ def simplify(
     reference_triangles: _Int32,
     max_error: float,
     stretch: tuple[float, float, float] = ...,
+    other: tuple[float, float, float] = ...,
     cell: float = 1.0,
     most_triangles: int = 0,
     threads: int = 1,

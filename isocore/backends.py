@@ -61,7 +61,7 @@ BACKENDS: dict[str, Backend] = {
             title="adaptive skeleton climbing",
             accepts=(Volume,),
             prepare=prepare_climbing,
-            options=frozenset({"block_size", "max_error"}),
+            options=frozenset({"block_size", "max_error", "simplify", "triangles"}),
             cites="Poston, Wong, Heng 1998",
         ),
         Backend(
@@ -69,6 +69,7 @@ BACKENDS: dict[str, Backend] = {
             title="volume thinning",
             accepts=(CellMesh, Volume),
             prepare=prepare_thinning,
+            options=frozenset({"simplify", "triangles"}),
             cites="Itoh, Yamaguchi, Koyamada 1996, 2001",
         ),
         Backend(
@@ -76,7 +77,7 @@ BACKENDS: dict[str, Backend] = {
             title="marching cubes; marching tetrahedra for meshes",
             accepts=(Volume, CellMesh),
             prepare=prepare_marching_cubes,
-            options=frozenset({"topology", "smooth"}),
+            options=frozenset({"topology", "smooth", "simplify", "triangles"}),
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),
     )
@@ -139,7 +140,12 @@ def prepare(field: Field, backend: str, options: Options, outlook: Outlook | Non
 def check_options(backend: str, options: Options) -> None:
     """Refuse an option that the backend does not understand, rather than ignore it."""
     rows = BACKENDS | {LABELS.name: LABELS}
-    of_others = frozenset().union(*(row.options for row in rows.values())) - rows[backend].options
+    own = rows[backend].options
+    of_others = frozenset().union(*(row.options for row in rows.values())) - own
+    if options.max_error is not None and "simplify" in own and "max_error" in of_others:
+        if not (options.simplify or options.triangles):
+            raise OptionError(f"--max-error: {backend} keeps one only with --simplify; add that or leave it out")
+        of_others -= {"max_error"}
     for option in fields(Options):
         if option.name in of_others and getattr(options, option.name) is not None:
             raise OptionError(f"--{option.name.replace('_', '-')}: is not an option of {backend}; leave it out")

@@ -35,17 +35,34 @@ class Outlook:
 class Deviation:
     """How far the reference's vertices lie from the surface: largest, mean and root mean square.
 
-    In voxels, and in the world in `unit`; bound: what was asked for, as it was written.
+    In voxels, None for a mesh, and in the world in `unit`; bound: what was asked for, as it was written. back_max: no
+    point of the surface lies further from the reference; None where that is not known.
     """
 
-    max: float
-    mean: float
-    rms: float
+    max: float | None
+    mean: float | None
+    rms: float | None
     max_world: float
     mean_world: float
     rms_world: float
     unit: str
     bound: str
+    back_max: float | None = None
+    back_max_world: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simplification:
+    """How triangles became fewer: edges contracted, and refused by each rule; seconds: of its own."""
+
+    triangles_before: int
+    collapses: int
+    refused_link: int
+    refused_shape: int
+    refused_outward: int
+    refused_back: int
+    refused_crossing: int
+    seconds: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,6 +120,7 @@ class LabelFacts:
 class Findings:
     """What a method has to say about one surface, by the report's keys; facts: what no other key covers."""
 
+    simplification: Simplification | None = None
     error: Deviation | None = None
     search: Search | None = None
     ambiguous: Ambiguous | None = None
@@ -124,7 +142,7 @@ class Extraction:
     def facts(self) -> dict[str, Any]:
         """The findings as they stand in the report; what there is nothing to say about is left out."""
         found = self.findings
-        names = ("error", "search", "ambiguous", "climbing", "label")
+        names = ("simplification", "error", "search", "ambiguous", "climbing", "label")
         parts = {name: getattr(found, name) for name in names}
         return {key: keys_of(part) for key, part in parts.items() if part is not None} | found.facts
 

@@ -22,6 +22,8 @@ class Options:
     normals: compute vertex normals; None is yes where a job's format holds them, and no in `extract`.
     block_size: cells per block and axis, one of BLOCK_SIZES.
     max_error: how far the reference's vertices may lie from the surface; a text is parsed.
+    simplify: contract edges within max_error; None is yes where the backend does so by default.
+    triangles: at most so many; edges are contracted past the default bound if they must, not past one that was given.
     topology: "faces" (the default) closes every loop of a cell by a disk; "trilinear" joins two by a tube where the
         trilinear function does.
     smooth: rounds of smoothing, in which no sample changes sides.
@@ -33,6 +35,8 @@ class Options:
     normals: bool | None = None
     block_size: int | None = None
     max_error: MaxError | None = None
+    simplify: bool | None = None
+    triangles: int | None = None
     topology: str | None = None
     smooth: int | None = None
     background: int | None = None

@@ -158,6 +158,8 @@ def _asked(job: Job, target: Target) -> Asked:
             normals=job.normals,
             block_size=options.block_size,
             max_error=None if options.max_error is None else str(options.max_error),
+            simplify=options.simplify,
+            triangles=options.triangles,
             topology=options.topology,
             smooth=options.smooth,
             background=options.background,
@@ -222,7 +224,7 @@ class _ReferenceRuns:
         if not self._wanted or run.isovalue is None or run.surface is None or run.seconds is None:
             return run
         own_seconds = run.seconds.prepare + run.seconds.extract
-        if self._backend == REFERENCE:
+        if self._backend == REFERENCE and run.findings.simplification is None:
             triangles, vertices, seconds = run.surface.triangles, run.surface.vertices, own_seconds
         else:
             triangles, vertices, seconds = self._extracted(run.isovalue)

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from isocore import _kernels
-from isocore.extraction import Deviation, Field, Findings
+from isocore.extraction import Field, Findings
 from isocore.job import Options
 from isocore.surface import Surface
 from isocore.volume import Volume
@@ -32,14 +32,13 @@ def remeasured(findings: Findings, field: Field, isovalue: float, surface: Surfa
     voxels = _kernels.distances_to(vertices, surface.triangles, points, threads)
     spacing = np.array(field.spacing)
     world = _kernels.distances_to(vertices * spacing, surface.triangles, points * spacing, threads)
-    error = Deviation(
+    error = replace(
+        findings.error,
         max=voxels[0],
         mean=voxels[1],
         rms=voxels[2],
         max_world=world[0],
         mean_world=world[1],
         rms_world=world[2],
-        unit=findings.error.unit,
-        bound=findings.error.bound,
     )
     return replace(findings, error=error)

@@ -125,7 +125,7 @@ def test_a_negative_slope_turns_the_surface_inside_out(tmp_path: Path) -> None:
         ("--report", "run.txt"),
         ("--require", "beauty"),
         ("--max-error", "-1"),
-        ("--max-error", "1e-1"),
+        ("--max-error", "1e-"),
         ("--block-size", "3"),
         ("-b", "mc", "--block-size", "4"),
         ("--shape", "1,2"),

@@ -18,7 +18,8 @@ from isocore.benches.thinning import Table
 from isocore.choices import BLOCK_SIZES, parse_max_error
 from isocore.digits import exact
 from isocore.errors import FieldError
-from isocore.methods.climbing import DEFAULT_BLOCK_SIZE, Bound, bound_for
+from isocore.methods.bounds import Bound, bound_for
+from isocore.methods.climbing import DEFAULT_BLOCK_SIZE
 from isocore.volume import Volume
 
 #: Max, mean and rms, in voxels.

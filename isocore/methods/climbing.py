@@ -6,35 +6,17 @@ Computer Graphics Forum 17(3), 1998; kernels/climbing/README.md says where ours 
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
-
-import numpy as np
-
 from isocore import _kernels
-from isocore.choices import BLOCK_SIZES, MILLIMETRES, MaxError, Unbounded, Voxels
+from isocore.choices import BLOCK_SIZES
 from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Climbing, Deviation, Extract, Extraction, Findings, Outlook
 from isocore.job import Options
-from isocore.methods.marching_cubes import placed_surface
+from isocore.methods.bounds import DEFAULT_MAX_ERROR, Bound, bound_for
+from isocore.methods.marching_cubes import drawn
+from isocore.methods.simplifying import Mesh, volume_simplifier
 from isocore.volume import Volume
 
 DEFAULT_BLOCK_SIZE = 16
-DEFAULT_MAX_ERROR = Voxels(0.5, "0.5")
-
-
-@dataclass(frozen=True, slots=True)
-class Bound:
-    """How far marching cubes' vertices may lie from the surface.
-
-    distance: at most this; in voxels, or with `in_world` in the volume's unit once each index axis is stretched by
-        its spacing. Infinite without a bound.
-    text: as the user would write it.
-    """
-
-    distance: float
-    in_world: bool
-    text: str
 
 
 def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extract:
@@ -44,21 +26,28 @@ def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extr
     # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
     ranges = _kernels.sample_ranges(volume.samples, options.threads) if outlook.isovalues > 1 else None
 
+    simplify = volume_simplifier(volume, options)
+
     def extract(isovalue: float) -> Extraction:
+        asked = (volume.stored_isovalue(isovalue), volume.inside_is_below, options.cap, options.threads)
         climbed = _kernels.climb(
             volume.samples,
-            volume.stored_isovalue(isovalue),
-            volume.inside_is_below,
-            options.cap,
-            options.threads,
+            *asked,
             block_size,
             bound.distance,
             bound.in_world,
             volume.spacing,
+            measured=simplify is None,
             ranges=ranges,
         )
-        surface, seconds = placed_surface(volume, climbed.vertices, climbed.triangles, options)
-        return Extraction(surface, climbing_findings(climbed.facts, bound, volume.unit), seconds_normals=seconds)
+        findings = climbing_findings(climbed.facts, bound, volume.unit)
+        mesh = (climbed.vertices, climbed.triangles)
+
+        def marched() -> Mesh:
+            reference = _kernels.marching_cubes(volume.samples, *asked)
+            return reference.vertices, reference.triangles
+
+        return drawn(volume, mesh, options, findings, simplify=simplify, reference=marched)
 
     return extract
 
@@ -70,28 +59,6 @@ def check_block_size(size: int | None) -> int:
     if size not in BLOCK_SIZES:
         raise OptionError(f"--block-size {size}: must be one of {', '.join(map(str, BLOCK_SIZES))}")
     return size
-
-
-def bound_for(volume: Volume, asked: MaxError) -> Bound:
-    """The bound on the surface's error in index space. Raises OptionError where the volume lacks the bound's unit.
-
-    Voxels are counted along the index axes, whatever their spacing. World units are measured in the world: each axis
-    is stretched by its spacing, and where the axes are not at right angles the bound shrinks so that it still holds.
-    """
-    if isinstance(asked, Unbounded):
-        return Bound(math.inf, False, asked.text)
-    if isinstance(asked, Voxels):
-        return Bound(asked.distance, False, asked.text)
-    if not volume.unit:
-        raise OptionError(
-            f"--max-error {asked}: the volume does not say its unit; give the error in voxels, or the volume a spacing"
-        )
-    if volume.unit not in MILLIMETRES:
-        raise OptionError(f"--max-error {asked}: the volume is in {volume.unit}; give the error in voxels")
-    directions = np.asarray(volume.affine)[:3, :3] / np.asarray(volume.spacing)
-    stretch = max(1.0, float(np.linalg.norm(directions, 2)) * (1 - 1e-12))
-    distance = asked.distance * MILLIMETRES[asked.unit] / MILLIMETRES[volume.unit]
-    return Bound(distance / stretch, True, asked.text)
 
 
 def climbing_findings(facts: _kernels.ClimbingFacts, bound: Bound, unit: str) -> Findings:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from isocore import _kernels
 from isocore.extraction import Ambiguous, Extract, Extraction, Findings, Search
 from isocore.job import Options
-from isocore.methods.marching_cubes import placed_surface
+from isocore.methods.marching_cubes import drawn
+from isocore.methods.simplifying import volume_simplifier
 from isocore.volume import Volume
 
 #: Past this share of the vertices, extrema are noise: the skeleton grows with them, and the walk saves little.
@@ -19,11 +20,10 @@ NOISE = 0.05
 def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
     """Thin the volume now; then walk for every isovalue. With `options.cap` it counts as surrounded by the outside."""
     index = _kernels.GridIndex(volume.samples, volume.inside_is_below, options.cap)
-    advice = _advice(index)
+    advice, simplify = _advice(index), volume_simplifier(volume, options)
 
     def extract(isovalue: float) -> Extraction:
         walked = index.propagate(volume.stored_isovalue(isovalue), options.threads)
-        surface, seconds = placed_surface(volume, walked.vertices, walked.triangles, options)
         search = Search(
             cells=index.cells,
             extrema=index.extrema,
@@ -33,7 +33,9 @@ def prepare_grid_thinning(volume: Volume, options: Options) -> Extract:
             intersected=walked.visited,
         )
         ambiguous = Ambiguous(faces=walked.ambiguous_faces, cells=walked.ambiguous_cells)
-        return Extraction(surface, Findings(search=search, ambiguous=ambiguous), advice, seconds)
+        findings = Findings(search=search, ambiguous=ambiguous)
+        mesh = (walked.vertices, walked.triangles)
+        return drawn(volume, mesh, options, findings, simplify=simplify, warnings=advice)
 
     return extract
 

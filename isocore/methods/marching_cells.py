@@ -5,6 +5,7 @@ Doi, Koide 1991; Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -14,6 +15,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
 from isocore.methods.bending import bend
+from isocore.methods.simplifying import Simplifier, mesh_simplifier
 from isocore.surface import Point, Surface
 
 # float32 is enough while its steps are below this part of a cell: some cells are smaller than the mean one, and
@@ -26,14 +28,15 @@ _CAP = "--cap closes volumes only: a mesh's surface stays open where it meets th
 def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     """Scan all cells for every isovalue."""
     warnings, single, edges = mesh_warnings(options), single_precision(mesh), needs_edges(mesh, options)
+    simplify = mesh_simplifier(mesh, options)
 
     def extract(isovalue: float) -> Extraction:
         marched = _kernels.marching_cells(
             mesh.points, mesh.tets, mesh.hexes, mesh.values, isovalue, options.threads, single, edges
         )
-        surface, seconds = mesh_surface(mesh, marched, isovalue, options)
         search = Search(cells=mesh.cells, visited=mesh.cells, intersected=marched.intersected)
-        return Extraction(surface, Findings(search=search), warnings, seconds)
+        findings = Findings(search=search)
+        return mesh_surface(mesh, marched, isovalue, options, findings, simplify=simplify, warnings=warnings)
 
     return extract
 
@@ -63,20 +66,27 @@ def single_precision(mesh: CellMesh, offset: Point = (0.0, 0.0, 0.0)) -> bool:
 
 
 def mesh_surface(
-    mesh: CellMesh, found: _kernels.MarchedMesh | _kernels.WalkedMesh, isovalue: float, options: Options
-) -> tuple[Surface, float]:
-    """A kernel's vertices and triangles, which lie in the mesh's world already, as a Surface.
-
-    And the seconds that its normals took, where they are asked for.
-    """
-    vertices = found.vertices
+    mesh: CellMesh,
+    found: _kernels.MarchedMesh | _kernels.WalkedMesh,
+    isovalue: float,
+    options: Options,
+    findings: Findings,
+    *,
+    simplify: Simplifier | None,
+    warnings: tuple[str, ...],
+) -> Extraction:
+    """What becomes of a kernel's mesh, which lies in the world already: bent, and simplified if that is asked for."""
+    vertices, triangles, edges = found.vertices, found.triangles, found.edges
     if mesh.curved:
-        vertices = bend(mesh, found.edges, vertices, found.triangles, isovalue)
+        vertices = bend(mesh, edges, vertices, triangles, isovalue)
+    if simplify is not None:
+        fewer = simplify((vertices, triangles))
+        vertices, triangles, warnings = fewer.vertices, fewer.triangles, (*warnings, *fewer.warnings)
+        edges = edges[fewer.kept] if len(edges) else edges
+        findings = replace(findings, error=fewer.error, simplification=fewer.facts)
     normals, start = None, perf_counter()
     if options.normals:
         cells = (mesh.points, mesh.tets, mesh.hexes, mesh.values)
-        normals = _kernels.mesh_normals(
-            *cells, isovalue, found.edges, vertices, found.triangles, options.threads
-        )
+        normals = _kernels.mesh_normals(*cells, isovalue, edges, vertices, triangles, options.threads)
     seconds = perf_counter() - start
-    return Surface(vertices, found.triangles, normals, unit=mesh.unit), seconds
+    return Extraction(Surface(vertices, triangles, normals, unit=mesh.unit), findings, warnings, seconds)

@@ -5,6 +5,8 @@ Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991. Of a mesh, marchi
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
@@ -18,6 +20,7 @@ from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
 from isocore.methods.marching_cells import prepare_marching_cells
+from isocore.methods.simplifying import Mesh, Simplifier, volume_simplifier
 from isocore.surface import Surface, place_fresh
 from isocore.volume import Volume
 
@@ -33,7 +36,7 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
         if trilinear:
             raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
         return prepare_marching_cells(field, options)
-    volume = field
+    volume, simplify = field, volume_simplifier(field, options)
 
     def extract(isovalue: float) -> Extraction:
         stored = volume.stored_isovalue(isovalue)
@@ -42,12 +45,34 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
         )
         if options.smooth:
             _kernels.smooth_isosurface(marched.vertices, marched.triangles, options.smooth, options.threads)
-        surface, seconds = placed_surface(volume, marched.vertices, marched.triangles, options)
         tubes = marched.tubes if trilinear else None
         ambiguous = Ambiguous(faces=marched.ambiguous_faces, cells=marched.ambiguous_cells, tubes=tubes)
-        return Extraction(surface, Findings(ambiguous=ambiguous), seconds_normals=seconds)
+        mesh = (marched.vertices, marched.triangles)
+        return drawn(volume, mesh, options, Findings(ambiguous=ambiguous), simplify=simplify)
 
     return extract
+
+
+def drawn(
+    volume: Volume,
+    mesh: Mesh,
+    options: Options,
+    findings: Findings,
+    *,
+    simplify: Simplifier | None,
+    reference: Callable[[], Mesh] | None = None,
+    warnings: tuple[str, ...] = (),
+) -> Extraction:
+    """What becomes of a kernel's index-space mesh: simplified where that is asked for, then placed in the world.
+
+    reference: makes the surface that the mesh stands for, where it is not that itself.
+    """
+    if simplify is not None:
+        fewer = simplify(mesh, reference)
+        mesh, warnings = (fewer.vertices, fewer.triangles), (*warnings, *fewer.warnings)
+        findings = replace(findings, error=fewer.error, simplification=fewer.facts)
+    surface, seconds = placed_surface(volume, *mesh, options)
+    return Extraction(surface, findings, warnings, seconds)
 
 
 def placed_surface(

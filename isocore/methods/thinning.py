@@ -18,6 +18,7 @@ from isocore.methods.grid_thinning import NOISE, prepare_grid_thinning
 from isocore.methods.index_file import AGAIN, is_of, load_index
 from isocore.methods.marching_cells import mesh_surface, mesh_warnings, needs_edges, single_precision
 from isocore.methods.mesh_index import IndexPart, MeshIndex
+from isocore.methods.simplifying import mesh_simplifier
 
 
 def build_index(mesh: CellMesh) -> MeshIndex:
@@ -36,7 +37,7 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
     index, ready, warnings = _index_of(mesh, outlook)
-    with_edges = needs_edges(mesh, options)
+    with_edges, simplify = needs_edges(mesh, options), mesh_simplifier(mesh, options)
     single, foreign = single_precision(mesh), outlook.index is not None
 
     def extract(isovalue: float) -> Extraction:
@@ -51,7 +52,6 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             index = build_index(mesh)
             ready = ready_index(mesh, index, built=True)
             walked = ready.propagate(isovalue, options.threads, single, with_edges)
-        surface, seconds = mesh_surface(mesh, walked, isovalue, options)
         search = Search(
             cells=mesh.cells,
             extrema=index.extrema,
@@ -61,7 +61,9 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
             intersected=walked.visited,
         )
         told = (*mesh_warnings(options), *warnings, *_oddities(index))
-        return Extraction(surface, Findings(search=search), told, seconds)
+        return mesh_surface(
+            mesh, walked, isovalue, options, Findings(search=search), simplify=simplify, warnings=told
+        )
 
     return extract
 

@@ -22,8 +22,8 @@ KEYS = (
     "source", "output", "status", "message", "warnings", "missed", "sha256", "bytes",
     "kind", "shape", "dtype", "spacing", "space", "unit", "volume", "step", "time", "field", "connectivity", "range",
     "nonfinite", "ignored", "histogram", "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen",
-    "options", "surface", "reference", "ratio", "error", "search", "ambiguous", "climbing", "label", "facts",
-    "seconds", "peak_rss_bytes",
+    "options", "surface", "reference", "ratio", "simplification", "error", "search", "ambiguous", "climbing", "label",
+    "facts", "seconds", "peak_rss_bytes",
 )
 
 

@@ -17,6 +17,8 @@ class Given:
     normals: bool
     block_size: int | None = None
     max_error: str | None = None
+    simplify: bool | None = None
+    triangles: int | None = None
     topology: str | None = None
     smooth: int | None = None
     background: int | None = None

@@ -13,7 +13,8 @@ from isocore import _kernels
 from isocore.backends import Options, prepare
 from isocore.choices import parse_max_error
 from isocore.errors import OptionError
-from isocore.methods.climbing import bound_for, check_block_size
+from isocore.methods.bounds import bound_for
+from isocore.methods.climbing import check_block_size
 from isocore.volume import Volume
 
 Points = npt.NDArray[np.float64]

@@ -1,8 +1,10 @@
 // bind_simplification.cpp - simplify(vertices, triangles, reference_vertices, reference_triangles, max_error, stretch,
-// cell, most_triangles, threads), once per type of coordinates.
+// other, cell, most_triangles, threads), once per type of coordinates.
 #include <nanobind/stl/array.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -24,9 +26,9 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
     module.def(
         "simplify",
         [=](const Rows<Real, 3>& vertices, const Triangles& triangles, const Rows<Real, 3>& reference_vertices,
-            const Triangles& reference_triangles, double max_error, const std::array<double, 3>& stretch, double cell,
-            std::size_t most_triangles, int threads) {
-            const simplification::Options options{max_error, stretch, cell, most_triangles, threads};
+            const Triangles& reference_triangles, double max_error, const std::array<double, 3>& stretch,
+            const std::array<double, 3>& other, double cell, std::size_t most_triangles, int threads) {
+            const simplification::Options options{max_error, stretch, cell, other, most_triangles, threads};
             simplification::Simplified<Real> out;
             {
                 const nb::gil_scoped_release unlocked;
@@ -34,22 +36,27 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
                                                arrays(reference_vertices, reference_triangles), options);
             }
             const auto& f = out.facts;
-            return simplified(to_numpy(std::move(out.vertices), 3), to_numpy(std::move(out.triangles), 3), f.collapses,
+            const double count = std::max<double>(1, static_cast<double>(reference_vertices.shape(0)));
+            const auto deviation = [&](const simplification::Deviation& found) {
+                return nb::make_tuple(found.max, found.sum / count, std::sqrt(found.squares / count));
+            };
+            return simplified(to_numpy(std::move(out.vertices), 3), to_numpy(std::move(out.triangles), 3),
+                              to_numpy(std::move(out.kept)), f.collapses,
                               nb::make_tuple(f.refused[0], f.refused[1], f.refused[2], f.refused[3], f.refused[4]),
-                              f.unproved, f.max, f.sum, f.squares, f.back_max);
+                              f.unproved, deviation(f.error), deviation(f.other), f.back_max);
         },
         nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("reference_vertices").noconvert(),
         nb::arg("reference_triangles").noconvert(), nb::arg("max_error"),
-        nb::arg("stretch") = std::array<double, 3>{1, 1, 1}, nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0,
-        nb::arg("threads") = 1);
+        nb::arg("stretch") = std::array<double, 3>{1, 1, 1}, nb::arg("other") = std::array<double, 3>{1, 1, 1},
+        nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("threads") = 1);
 }
 
 }  // namespace
 
 void bind_simplification(nb::module_& module) {
-    const NamedTuple simplified(module, "SimplifiedMesh",
-                                {"vertices", "triangles", "collapses", "refused", "unproved", "error_max", "error_sum",
-                                 "error_squares", "back_max"});
+    const NamedTuple simplified(
+        module, "SimplifiedMesh",
+        {"vertices", "triangles", "kept", "collapses", "refused", "unproved", "error", "error_other", "back_max"});
     bind<float>(module, simplified);
     bind<double>(module, simplified);
 }

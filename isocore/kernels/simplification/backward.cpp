@@ -1,7 +1,8 @@
 #include "simplification/backward.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <cmath>
+#include <limits>
 
 namespace isocore::simplification {
 namespace {
@@ -39,6 +40,10 @@ std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, co
 template <class Real>
 bool Backward<Real>::are_near(const Star& star, float limit) {
     limit_ = limit;
+    if (!proves_all_ && limit > kFarthest) {
+        distances_.assign(star.face_count(), std::numeric_limits<float>::infinity());
+        return true;
+    }
     faces_.clear();
     Box box = Box::around({star.place(0), star.place(1), star.place(2)}, limit + 1e-3f);
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
@@ -46,17 +51,24 @@ bool Backward<Real>::are_near(const Star& star, float limit) {
         box.add(Box::around(faces_.back(), limit + 1e-3f));
     }
     near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box);
-    return std::all_of(faces_.begin(), faces_.end(), [&](const Corners& face) { return is_near(face, near_star_, 0); });
+    distances_.clear();
+    return std::all_of(faces_.begin(), faces_.end(), [&](const Corners& face) {
+        distance_ = 0;
+        const bool is_proved = is_near(face, near_star_, 0);
+        distances_.push_back(distance_);
+        return is_proved;
+    });
 }
 
 template <class Real>
-bool Backward<Real>::is_near(std::int32_t triangle, float limit) {
+float Backward<Real>::distance(std::int32_t triangle, float limit) {
     limit_ = limit;
     const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
     const auto place = [&](std::size_t n) { return mesh_.places[static_cast<std::size_t>(corners[n])].at; };
     const Corners face{Spot{0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0))};
     near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + 1e-3f));
-    return is_near(face, near_star_, 0);
+    distance_ = 0;
+    return is_near(face, near_star_, 0) ? distance_ : std::numeric_limits<float>::infinity();
 }
 
 // around: triangles of the reference, all that are near and perhaps others.
@@ -68,7 +80,10 @@ bool Backward<Real>::is_near(const Corners& triangle, const Patch& around, int d
     frame_.clear();
     frame_.add(triangle[0], triangle[1], triangle[2]);
     frame_.find_frames();
-    if (column_.is_covered(frame_.frame(0), near, limit_)) return true;
+    if (column_.is_covered(frame_.frame(0), near, limit_)) {
+        distance_ = std::max(distance_, column_.distance());
+        return true;
+    }
     if (longest_side(triangle) <= kSmall || depth + 1 == kDepth) {
         // Some of the triangles may be enough: the nearest, where there are too many.
         for (float margin = limit_; near.size() > kMostTriangles && margin > kLeastMargin; margin *= 0.7f)
@@ -78,6 +93,7 @@ bool Backward<Real>::is_near(const Corners& triangle, const Patch& around, int d
         for (std::size_t n = 0; n < near.size(); ++n)
             facets_.add(near.corner(n, 0), near.corner(n, 1), near.corner(n, 2));
         facets_.find_frames();
+        distance_ = limit_;
         return is_near_by_pieces(triangle);
     }
     const auto parts = quarters(triangle, between);

@@ -20,10 +20,17 @@ class Backward {
   public:
     Backward(const Reference<Real>& reference, const Mesh<Real>& mesh) : reference_(reference), mesh_(mesh) {}
 
+    // Without it, a limit of more than kFarthest is not proved to be kept: are_near() then says yes, and distance()
+    // infinity.
+    void prove_all(bool all) { proves_all_ = all; }
+    static constexpr float kFarthest = 4;  // cells
+
     // Is it proved that all points of the star's faces lie within the limit of the reference?
     bool are_near(const Star& star, float limit);
-    // The same of one triangle of the mesh.
-    bool is_near(std::int32_t triangle, float limit);
+    // Of each face of that star: how far its points lie from the reference, at most.
+    float distance(std::size_t face) const { return distances_[face - 1]; }
+    // The same of one triangle of the mesh: at most so far, or infinity where it is not proved to lie within the limit.
+    float distance(std::int32_t triangle, float limit);
 
   private:
     using Corners = std::array<Spot, 3>;
@@ -39,10 +46,13 @@ class Backward {
 
     const Reference<Real>& reference_;
     const Mesh<Real>& mesh_;
+    bool proves_all_ = true;
     float limit_ = 0;
     Patch near_star_;
     std::array<Patch, 4> near_;  // by depth
     std::vector<Corners> faces_;
+    std::vector<float> distances_;
+    float distance_ = 0;  // so far, of the triangle that is looked at
     Column column_;
     Facets frame_, facets_;
     std::vector<Within> lattice_;

@@ -17,6 +17,7 @@ bool Column::is_covered(const Facets::Frame& frame, const Patch& patch, float li
     frame_ = frame;
     limit_ = limit;
     count_ = 0;
+    distance_ = 0;
     if (places_[0].size() < patch.size() + 2 * kLanes) {
         for (auto& column : places_) column.resize(2 * patch.size() + 2 * kLanes);
     }
@@ -54,16 +55,27 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
     const auto beside = below | right | left | (beyond < lowest) | (highest < zero - beyond);
     const unsigned valid = patch.size() - first < kLanes ? (1u << (patch.size() - first)) - 1 : 255u;
     const unsigned over = ~beside.bits() & valid;
-    unsigned within = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
-    for (unsigned bits = over & ~within; bits != 0; bits &= bits - 1) {
+    const unsigned whole = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
+    unsigned within = whole;
+    for (unsigned bits = over & ~whole; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         std::array<Height, 3> triangle;
         for (std::size_t n = 0; n < 3; ++n) triangle[n] = {u[n].each()[lane], v[n].each()[lane], h[n].each()[lane]};
         const Part part = part_of(triangle);
         if (part == Part::across) return false;
-        if (part == Part::within) within |= 1u << lane;
+        if (part == Part::within) {
+            within |= 1u << lane;
+            distance_ = limit_;
+        }
     }
     if (within & patch.at_border(first)) return false;
+    if (whole != 0) {
+        std::array<float, kLanes> packed{};
+        std::array<float, kLanes> heights{};
+        greatest(highest, zero - lowest).pack(whole, packed.data());
+        std::copy_n(packed.begin(), std::popcount(whole), heights.begin());
+        distance_ = std::max(distance_, *std::max_element(heights.begin(), heights.end()));
+    }
     for (std::size_t n = 0; n < 3; ++n) {
         u[n].pack(within, places_[2 * n].data() + count_);
         v[n].pack(within, places_[2 * n + 1].data() + count_);

@@ -21,6 +21,9 @@ class Column {
     // Does the test prove that all points of the triangle with this frame lie within the limit of the patch?
     bool is_covered(const Facets::Frame& frame, const Patch& patch, float limit);
 
+    // How far, at most.
+    float distance() const { return distance_; }
+
   private:
     // A place beside the triangle: along its first side, across it, and above it.
     struct Height {
@@ -33,7 +36,7 @@ class Column {
     bool is_odd_at(float share, float other_share) const;
 
     Facets::Frame frame_;
-    float limit_ = 0;
+    float limit_ = 0, distance_ = 0;
     // Of the triangles with parts within the limit: u and v of each corner.
     std::array<std::vector<float>, 6> places_;
     std::size_t count_ = 0;

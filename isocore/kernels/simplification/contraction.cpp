@@ -68,7 +68,7 @@ void Contraction<Real>::enter_faces() {
         const std::int32_t number = star_.triangles[n];
         Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
         triangle.corners[triangle.index_of(star_.centre)] = star_.target();
-        mesh_.proved[static_cast<std::size_t>(number)] = 1;
+        mesh_.proved[static_cast<std::size_t>(number)] = backward_.distance(n);
         const std::size_t first = crossings_.first_cube(n);
         grid_.enter(number, crossings_.cubes_of_faces().data() + first, crossings_.end_cube(n) - first, spare_);
     }

@@ -25,6 +25,8 @@ class Contraction {
     // Contracts the edge from the ring's centre to its neighbour `target` onto that neighbour. False if a rule forbids
     // it; then nothing has changed.
     bool contract(const Ring& ring, std::size_t target);
+    // From now on.
+    void set_limit(float limit) { limit_ = limit; }
     // The star of the last contraction.
     const Star& star() const { return star_; }
     Backward<Real>& backward() { return backward_; }

@@ -1,6 +1,7 @@
 #include "simplification/mesh.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -81,7 +82,7 @@ void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
     triangles.resize(count);
     original_triangles_.resize(count);
     proved.resize(count);
-    std::fill(proved.begin(), proved.end(), std::uint8_t{0});
+    std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
     for (std::size_t t = 0; t < count; ++t) {
         const auto to = static_cast<std::size_t>(next[lowest(t)]++);
         triangles[to] = {{corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}, kNone};
@@ -172,6 +173,7 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, Simplified<Real>& out) cons
         if (vertices[static_cast<std::size_t>(renumbered_[n])].count == 0) continue;
         numbers[static_cast<std::size_t>(renumbered_[n])] = next++;
         for (std::size_t a = 0; a < 3; ++a) out.vertices.push_back(input.vertices[3 * n + a]);
+        out.kept.push_back(static_cast<std::int32_t>(n));
     }
     std::vector<std::int32_t> by_original(input.triangle_count);
     for (std::size_t t = 0; t < triangles.size(); ++t)

@@ -81,7 +81,7 @@ class Mesh {
     std::vector<Vertex> vertices;
     std::vector<Quadric> quadrics;
     Array<Triangle> triangles;
-    Array<std::uint8_t> proved;    // by triangle: it is known to keep the bound backwards
+    Array<float> proved;           // by triangle: how far its points lie from the reference, at most
     Array<std::int32_t> original;  // the vertices' numbers in the input
 
   private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::int32_t kBoxCells = 64;
 constexpr int kPhases = 4;
+constexpr float kFirstLimit = 1.0f / 16;  // cells, where a number of triangles is asked for
 // How far the boxes of each phase are shifted along each axis, in quarters of a box.
 constexpr std::array<std::array<std::int32_t, 3>, kPhases> kShifts{std::array{0, 0, 0}, std::array{2, 2, 2},
                                                                    std::array{1, 3, 1}, std::array{3, 1, 3}};
@@ -26,17 +28,18 @@ class Simplification {
     Simplification(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options)
         : input_(input),
           options_(options),
-          limit_(static_cast<float>(options.max_error)),
           cells_(Cells::around(reference, options.cell)),
+          limit_(static_cast<float>(std::min(options.max_error, farthest()))),
           reference_(reference, cells_),
           mesh_(input, cells_, options.stretch),
           grid_(cells_),
           costs_(mesh_.vertex_count()) {
         for (int n = 0; n < std::max(options.threads, 1); ++n)
             workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, reference_, grid_, limit_));
+        for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options.max_error));
         enter_triangles();
         find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
-        if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), std::uint8_t{1});
+        if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
     }
 
     // Contracts edges that lie in a box with all that they change, each box for itself.
@@ -45,8 +48,29 @@ class Simplification {
         std::atomic<std::size_t> next{0};
         parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
             for (std::size_t box = next++; box < boxes.size(); box = next++)
-                sweep(boxes[box], mesh_, *workers_[worker], costs_, input_.triangle_count, options_.most_triangles);
+                sweep(boxes[box], mesh_, *workers_[worker], costs_, std::numeric_limits<std::size_t>::max());
         });
+    }
+
+    // Contracts the cheapest edges of the whole mesh until no more triangles than asked for are left: as many as a
+    // small bound allows, and then those of ever larger bounds.
+    void run_to_count() {
+        std::vector<std::int32_t> movable;
+        Contraction<Real>& worker = *workers_[0];
+        for (float limit = std::min(kFirstLimit, limit_);; limit = std::min(2 * limit, limit_)) {
+            worker.set_limit(limit);
+            movable.clear();
+            for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
+                Vertex& vertex = mesh_.vertices[v];
+                vertex.failed = 0;
+                vertex.movable = vertex.count > 0 && !vertex.open && !vertex.odd;
+                if (vertex.movable) movable.push_back(static_cast<std::int32_t>(v));
+            }
+            const std::size_t left = input_.triangle_count - 2 * worker.collapses;
+            if (left <= options_.most_triangles || movable.empty()) return;
+            sweep(movable, mesh_, worker, costs_, (left - options_.most_triangles + 1) / 2);
+            if (limit == limit_) return;
+        }
     }
 
     Simplified<Real> take() {
@@ -61,6 +85,14 @@ class Simplification {
     }
 
   private:
+    // Nothing is further away from anything.
+    double farthest() const {
+        double sum = 1;
+        for (std::size_t a = 0; a < 3; ++a)
+            sum += static_cast<double>(cells_.dims[a]) / cells_.per_cell * options_.stretch[a];
+        return sum;
+    }
+
     void enter_triangles() {
         TriangleGrid::Spare spare;
         std::vector<std::int32_t> cubes;
@@ -102,37 +134,57 @@ class Simplification {
         });
     }
 
+    // Proves what is not proved yet, and measures how far each witness lies from its triangle.
     void measure(Facts& facts) {
-        Facets facets;
+        const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
+                         static_cast<float>(options_.other[2])};
+        const bool is_one_unit = other == mesh_.stretch();
         for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            const Triangle& triangle = mesh_.triangles[t];
-            if (triangle.is_gone()) continue;
-            if (!mesh_.proved[t])
-                facts.unproved += !workers_[0]->backward().is_near(static_cast<std::int32_t>(t), limit_ - 1e-5f);
-            const auto place = [&](std::size_t n) {
-                return mesh_.places[static_cast<std::size_t>(triangle.corners[n])].at;
-            };
-            facets.clear();
-            facets.add({0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0)));
-            facets.find_frames();
-            for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.places[static_cast<std::size_t>(w)].next) {
-                const Spot at = mesh_.relative(mesh_.places[static_cast<std::size_t>(w)].at, place(0));
-                const auto squared = static_cast<double>(facets.from_points(0, {at[0], at[1], at[2]}).first());
-                facts.max = std::max(facts.max, std::sqrt(squared));
-                facts.sum += std::sqrt(squared);
-                facts.squares += squared;
-            }
+            if (mesh_.triangles[t].is_gone()) continue;
+            float& proved = mesh_.proved[t];
+            if (std::isinf(proved) && std::isfinite(options_.max_error))
+                proved = workers_[0]->backward().distance(static_cast<std::int32_t>(t), limit_ - 1e-5f);
+            if (std::isinf(proved))
+                ++facts.unproved;
+            else
+                facts.back_max = std::max(facts.back_max, static_cast<double>(proved));
+            measure(mesh_.triangles[t], mesh_.stretch(), facts.error);
+            if (!is_one_unit) measure(mesh_.triangles[t], other, facts.other);
+        }
+        if (is_one_unit) facts.other = facts.error;
+    }
+
+    void measure(const Triangle& triangle, const Spot& stretch, Deviation& sum) {
+        if (triangle.witness == kNone) return;
+        const auto& origin = mesh_.places[static_cast<std::size_t>(triangle.corners[0])].at;
+        const auto place = [&](std::int32_t number) {
+            const auto& at = mesh_.places[static_cast<std::size_t>(number)].at;
+            Spot out;
+            for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(at[a] - origin[a]) * stretch[a];
+            return out;
+        };
+        facet_.clear();
+        facet_.add({0, 0, 0}, place(triangle.corners[1]), place(triangle.corners[2]));
+        facet_.find_frames();
+        for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.places[static_cast<std::size_t>(w)].next) {
+            const Spot at = place(w);
+            const auto squared = static_cast<double>(facet_.from_points(0, {at[0], at[1], at[2]}).first());
+            if (!(squared >= 0)) continue;  // a triangle without an area
+            sum.max = std::max(sum.max, std::sqrt(squared));
+            sum.sum += std::sqrt(squared);
+            sum.squares += squared;
         }
     }
 
     MeshArrays<Real> input_;
     const Options& options_;
-    float limit_;
     Cells cells_;
+    float limit_;
     Reference<Real> reference_;
     Mesh<Real> mesh_;
     TriangleGrid grid_;
     std::vector<float> costs_;
+    Facets facet_;
     std::vector<std::unique_ptr<Contraction<Real>>> workers_;
 };
 
@@ -142,7 +194,11 @@ template <class Real>
 Simplified<Real> simplify(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
     if (input.triangle_count == 0) return {};
     Simplification<Real> simplification(input, reference, options);
-    for (int phase = 0; phase < kPhases; ++phase) simplification.run(phase);
+    if (options.most_triangles > 0) {
+        simplification.run_to_count();
+    } else {
+        for (int phase = 0; phase < kPhases; ++phase) simplification.run(phase);
+    }
     return simplification.take();
 }
 

@@ -39,21 +39,42 @@ void Star::turn(const Ring& ring, std::size_t target) {
     }
 }
 
+// The sum of the triangles' normals, each twice its triangle's area long: twice the area that the ring encloses.
+Spot Star::doubled_area() const {
+    Spot sum{0, 0, 0};
+    for (std::size_t n = 0; n < count; ++n) {
+        const Spot normal = cross(place(n), place(n + 1 == count ? 0 : n + 1));
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += normal[a];
+    }
+    return sum;
+}
+
 bool Star::has_good_shapes() const {
     constexpr float kCosine = 0.34f;  // of 70 degrees
     constexpr float kHeight = 0.02f;  // of the longest side
     const Spot target = place(0);
     const Vector<Floats> to{target[0], target[1], target[2]};
+    const auto longest_of = [](const Vector<Floats>& a, const Vector<Floats>& b, const Vector<Floats>& c) {
+        return greatest(dot(a, a), greatest(dot(b, b), dot(c, c)));  // squared
+    };
+    const Spot whole = doubled_area();
+    const Vector<Floats> of_all{whole[0], whole[1], whole[2]};
+    const Floats zero(0.0f), limit(kCosine * kCosine);
     for (std::size_t n = 1; n < count - 1; n += kLanes) {
         const auto one = in_lanes(n), other = in_lanes(n + 1);
         const auto from_one = minus(one, to), from_other = minus(other, to), side = minus(other, one);
         const auto before = cross(one, other), after = cross(from_one, from_other);
-        const Floats cosine = dot(before, after), squared = dot(after, after);
-        const Floats longest =
-            greatest(dot(side, side), greatest(dot(from_one, from_one), dot(from_other, from_other)));
-        const auto good = (Floats(0.0f) < cosine) &
-                          (Floats(kCosine * kCosine) * dot(before, before) * squared <= cosine * cosine) &
-                          (Floats(kHeight * kHeight) * longest * longest <= squared);
+        const Floats squared = dot(after, after), old = dot(before, before);
+        const Floats longest = longest_of(side, from_one, from_other), old_longest = longest_of(side, one, other);
+        const Floats least_height(kHeight * kHeight);
+        const auto is_turned_as = [&](const Vector<Floats>& normal) {
+            const Floats cosine = dot(normal, after);
+            return (zero < cosine) & (limit * dot(normal, normal) * squared <= cosine * cosine);
+        };
+        const auto was_sliver = old < least_height * old_longest * old_longest;
+        const auto is_better = old * longest * longest < squared * old_longest * old_longest;
+        const auto good = (is_turned_as(before) | (was_sliver & is_turned_as(of_all))) &
+                          ((least_height * longest * longest <= squared) | is_better);
         const std::size_t faces = std::min(kLanes, count - 1 - n);
         const unsigned wanted = (1u << faces) - 1;
         if ((good.bits() & wanted) != wanted) return false;

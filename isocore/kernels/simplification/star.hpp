@@ -39,12 +39,16 @@ class Star : public Ring {
     std::int32_t target() const { return neighbours[0]; }
     std::size_t face_count() const { return count - 2; }
 
-    // No face is turned far from the triangle it replaces, and none is a sliver.
+    // No face is turned far from the triangle that it replaces, or from the whole star where that was a sliver, whose
+    // direction means little; and none is a sliver, unless a worse one was.
     bool has_good_shapes() const;
     // The faces as facets: face n has number n - 1.
     void draw(Facets& facets) const;
     // How far the farthest neighbour is away, at most.
     float reach() const;
+
+  private:
+    Spot doubled_area() const;
 };
 
 }  // namespace isocore::simplification

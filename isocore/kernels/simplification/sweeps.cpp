@@ -82,14 +82,14 @@ class Sweep {
 
 template <class Real>
 void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contraction<Real>& contraction,
-           std::vector<float>& costs, std::size_t triangles, std::size_t most) {
+           std::vector<float>& costs, std::size_t most) {
     Sweep<Real> sweep(mesh, contraction, costs);
     for (const std::int32_t v : vertices) {
         sweep.look_at(v);
         costs[static_cast<std::size_t>(v)] = sweep.find_cheapest();
     }
     constexpr float kFirst = 1e-6f;
-    while (triangles > most) {
+    while (most > 0) {
         float cheapest = kInfinity;
         for (const std::int32_t v : vertices) cheapest = std::min(cheapest, costs[static_cast<std::size_t>(v)]);
         if (cheapest == kInfinity) return;
@@ -97,21 +97,21 @@ void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contract
         std::frexp(std::max(cheapest, kFirst), &exponent);
         const float limit = std::ldexp(1.0f, exponent);  // the next power of two above
         bool is_done = false;
-        while (!is_done && triangles > most) {
+        while (!is_done && most > 0) {
             is_done = true;
             for (const std::int32_t v : vertices) {
                 if (costs[static_cast<std::size_t>(v)] > limit) continue;
-                if (sweep.try_vertex(v, limit)) triangles -= 2;
+                if (sweep.try_vertex(v, limit)) --most;
                 is_done = false;
-                if (triangles <= most) break;
+                if (most == 0) break;
             }
         }
     }
 }
 
 template void sweep(const std::vector<std::int32_t>&, Mesh<float>&, Contraction<float>&, std::vector<float>&,
-                    std::size_t, std::size_t);
+                    std::size_t);
 template void sweep(const std::vector<std::int32_t>&, Mesh<double>&, Contraction<double>&, std::vector<float>&,
-                    std::size_t, std::size_t);
+                    std::size_t);
 
 }  // namespace isocore::simplification

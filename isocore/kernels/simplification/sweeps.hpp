@@ -10,11 +10,10 @@
 
 namespace isocore::simplification {
 
-// Contracts edges from these vertices, which are movable, until no rule allows another, or only `most` triangles of the
-// mesh are left of `triangles`. costs: one for each vertex of the mesh, of which only those of movable ones are
-// touched.
+// Contracts edges from these vertices, which are movable, until no rule allows another, or `most` are contracted.
+// costs: one for each vertex of the mesh, of which only those of movable ones are touched.
 template <class Real>
 void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contraction<Real>& contraction,
-           std::vector<float>& costs, std::size_t triangles, std::size_t most);
+           std::vector<float>& costs, std::size_t most);
 
 }  // namespace isocore::simplification

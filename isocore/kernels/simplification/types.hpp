@@ -18,7 +18,9 @@ struct Options {
     // The side of a cell, in coordinates: about as long as the sides of the reference's triangles. Stretched cells are
     // about 1 wide.
     double cell = 1;
-    std::size_t most_triangles = 0;  // stop when there are no more than these
+    std::array<double, 3> other{1, 1, 1};  // from coordinates to another unit, in which the error is measured besides
+    // If not 0: stop when there are no more triangles than these. Smaller bounds are exhausted before larger ones.
+    std::size_t most_triangles = 0;
     int threads = 1;
 };
 
@@ -26,19 +28,25 @@ struct Options {
 enum class Rule : std::uint8_t { link, shape, outward, back, crossing };
 inline constexpr std::size_t kRules = 5;
 
+// Distances from the reference's vertices to the surface: the largest, their sum, and the sum of their squares.
+struct Deviation {
+    double max = 0, sum = 0, squares = 0;
+};
+
 struct Facts {
     std::size_t collapses = 0;
     std::array<std::size_t, kRules> refused{};  // by Rule
     std::size_t unproved = 0;                   // triangles of which it is not known that they keep the bound
-    // From the reference's vertices to the surface, stretched: the largest distance, the sum, that of the squares.
-    double max = 0, sum = 0, squares = 0;
-    double back_max = 0;  // no point of the surface lies further from the reference
+    Deviation error, other;                     // stretched, and in the other unit
+    double back_max =
+        0;  // no point of the surface, but for those triangles, lies further from the reference, stretched
 };
 
 template <class Real>
 struct Simplified {
     Array<Real> vertices;           // x, y, z of each
     Array<std::int32_t> triangles;  // three vertex numbers each
+    Array<std::int32_t> kept;       // of each vertex: its number in the input
     Facts facts;
 };
 
