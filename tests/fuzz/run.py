@@ -55,7 +55,8 @@ class Worker:
         self._start()
 
     def _start(self) -> None:
-        self._at.write_bytes(AT.pack(self._next, int(time.monotonic() * 1000)))
+        self._at.write_bytes(AT.pack(self._next, 0))
+        self._started = time.monotonic()
         numbers = map(str, (self._seed, self._next, self._step, self._last))
         command = [sys.executable, "-P", str(HERE / "worker.py"), ",".join(self._targets), *numbers, self._folder.name]
         with self._log.open("ab") as log, Path(self._folder.name, "stderr").open("wb") as errors:
@@ -67,7 +68,7 @@ class Worker:
         self._collect(outcome)
         number, begun = AT.unpack(self._at.read_bytes())
         code = self._process.poll()
-        if code is None and time.monotonic() - begun / 1000 > _HANGS_AFTER_SECONDS:
+        if code is None and time.monotonic() - (begun / 1000 or self._started) > _HANGS_AFTER_SECONDS:
             self._process.kill()
             self._process.wait()
             code = -1
@@ -76,6 +77,8 @@ class Worker:
             return True
         elif code != 0:
             tail = Path(self._folder.name, "stderr").read_text("utf-8", "replace")[-400:]
+            if not begun:
+                raise RuntimeError(f"a worker ends before its first input: {tail}")
             self._lost(outcome, number, "crash", f"exit code {code}: {tail}")
         if code == 0 or self._next >= self._last:
             return False
@@ -102,7 +105,7 @@ class Worker:
             {"target": target, "seed": self._seed, "number": number, "kind": kind, "detail": detail}
         )
         self._next = number + self._step
-        self._at.write_bytes(AT.pack(self._next, int(time.monotonic() * 1000)))
+        self._at.write_bytes(AT.pack(self._next, 0))
 
     def stop(self, outcome: Outcome) -> None:
         """End the process, count what was done, and collect what it told."""

@@ -216,7 +216,7 @@ def _made_once() -> tuple[Files, Job]:
     source.write_bytes(seeds_of("nrrd")[0].files["d.nrrd"])
     job = Job(source=source, targets=(Target("60", output),), if_changed=True)  # type: ignore[arg-type]  # parsed
     (run,) = convert(job)
-    keep_stamp(job, job.targets[0], input_hash(source), run)
+    keep_stamp(job, job.targets[0], input_hash(job), run)
     return {stamp_path(output).name: stamp_path(output).read_bytes()}, job
 
 
@@ -230,7 +230,7 @@ def _stamped(path: Path, random: Random) -> None:
 
     _, job = _made_once()
     stamp_path(job.targets[0].output).write_bytes(path.read_bytes())
-    reason, run = reason_to_run(job, job.targets[0], input_hash(job.source))
+    reason, run = reason_to_run(job, job.targets[0], input_hash(job))
     if reason:
         check_line(reason)
     if run is not None:
