@@ -81,6 +81,7 @@ def bench(
     """
     wanted = Wanted(threads=threads or default_threads(), **chosen)
     wanted.check(len(files))
+    _refuse_overwriting(files, wanted)
 
     failures = 0
     records = []
@@ -100,6 +101,17 @@ def bench(
 
         click.echo(json.dumps(records, indent=2))
     context.exit(1 if failures else 0)
+
+
+def _refuse_overwriting(files: tuple[Path, ...], wanted: Wanted) -> None:
+    from isocore.batches.places import refuse_overwriting_files
+    from isocore.readers import files_of
+
+    named = (("--csv", wanted.csv), ("--markdown", wanted.markdown), ("--plot", wanted.plot))
+    refuse_overwriting_files(
+        [("belongs to the input", file) for path in files for file in files_of(path)],
+        [(option, path) for option, path in named if path is not None],
+    )
 
 
 def _tables(path: Path, wanted: Wanted) -> list[Table]:

@@ -50,6 +50,7 @@ def report(
     isocore report run.json --to run.html --to run.csv
     isocore report --compare old.json new.json --fail-if 'triangles>+2%' --fail-if 'seconds>+20%'
     """
+    from isocore.batches.places import refuse_overwriting_files
     from isocore.errors import IsocoreError
     from isocore.report import load_report, merged, renderer_for, save_report
     from isocore.report.limits import check_limits, parse_limit
@@ -57,7 +58,9 @@ def report(
     from .console import say_table
 
     parsed = [parse_limit(limit) for limit in limits]
-    _refuse_overwriting(reports, targets)
+    refuse_overwriting_files(
+        [("is a report that is read", path) for path in reports], [("--to", path) for path in targets]
+    )
     for target in targets:
         renderer_for(target)
     if compare and len(reports) != 2:
@@ -89,21 +92,8 @@ def report(
         try:
             save_report(batch, target, mesh_bytes=page_size)
         except IsocoreError as error:
-            click.echo(f"isocore: {error}", err=True)
+            say(f"isocore: {error}")
             unwritten = True
     if not targets:
         say_table(batch)
     context.exit(1 if unwritten else 0)
-
-
-def _refuse_overwriting(reports: tuple[Path, ...], targets: tuple[Path, ...]) -> None:
-    """Refuse to write over a report that is read, or twice in one place."""
-    from isocore.batches.places import Places
-
-    places = Places()
-    for path in reports:
-        places.take(path, "is a report that is read")
-    for path in targets:
-        taken = places.take(path, "is written by another --to")
-        if taken is not None:
-            raise click.UsageError(f"--to {path}: {taken} and would be overwritten; choose another name")

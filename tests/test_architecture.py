@@ -79,7 +79,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "batches/leftovers": {"whole_file"},
     "batches/stamps": BATCHED | {"readers"},
     "batches/depfile": BATCHED | {"readers"},
-    "batches/places": set(),
+    "batches/places": {"errors"},
     "batches/inputs": BATCHED | {"readers", "batches/places"},
     "batches/naming": BATCHED | {"batches/inputs"},
     "batches/label_targets": BATCHED | {"readers", "methods/label_map"},

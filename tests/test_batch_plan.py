@@ -343,3 +343,38 @@ def test_isocore_report_overwrites_no_report_that_it_reads(family: Path, targets
     made = subprocess.run(words, cwd=family, capture_output=True, text=True, timeout=60, check=False)
     assert made.returncode == 2 and "choose another" in made.stderr
     assert (family / "a.json").read_bytes() == before and not (family / "x.csv").exists()
+
+
+@pytest.mark.parametrize("named", [("--csv", "s1/T1.nii.gz"), ("--csv", "x", "--plot", "folder/x")])
+def test_isocore_bench_overwrites_no_volume(family: Path, named: tuple[str, ...]) -> None:
+    """Nor one of its own tables by another."""
+    before = (family / "s1/T1.nii.gz").read_bytes()
+    words = [*PROGRAM[:-1], "bench", "s1/T1.nii.gz", *named]
+    made = subprocess.run(words, cwd=family, capture_output=True, text=True, timeout=60, check=False)
+    assert made.returncode == 2 and "choose another" in made.stderr and not (family / "x").exists()
+    assert (family / "s1/T1.nii.gz").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("fault", "more"),
+    [("times_of", ()), ("count_volumes", ("--volume", "all")), ("label_choices", ("--labels", "all"))],
+)
+def test_what_nobody_foresaw_while_planning_costs_one_row(
+    here: Path, monkeypatch: pytest.MonkeyPatch, fault: str, more: tuple[str, ...]
+) -> None:
+    """The others are planned as ever; the file is converted, or a row says the type of the error."""
+    from isocore.batches import plan as module
+
+    true = getattr(module, fault)
+
+    def faulty(path: Path, *arguments: object) -> object:
+        if path.parent.name == "s1":
+            raise LookupError("odd")
+        return true(path, *arguments)
+
+    monkeypatch.setattr(module, fault, faulty)
+    result = CliRunner().invoke(convert, ["s1", "s2", "-d", "out", "--name", "{relpath}", "--dry-run", *more])
+    lines = result.stdout.splitlines()
+    assert result.exit_code == 0 and len(lines) >= 3 and not any("out/s1" in line for line in lines[1:])
+    told = "fail: s1/T1.nii.gz: internal error (LookupError: odd); please report it"
+    assert lines[0] == told if fault == "label_choices" else lines[0].startswith("s1/T1.nii.gz -> out/s1/T1.ply")

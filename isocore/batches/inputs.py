@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path, PurePath
 
-from isocore.batches.places import place_of_name
+from isocore.batches.places import Folders
 from isocore.errors import OptionError
 from isocore.readers import SEARCHED, files_of, listed_files, stranger_of, suffix_of
 
@@ -69,14 +69,15 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
     """
     named = [(name, _is_folder(name)) for name in names]
     common = _common([name if is_folder else name.parent for name, is_folder in named])
+    folders = Folders()
     found: dict[object, Input] = {}
     for name, is_folder in named:
         inside = _search(name) if is_folder else [Input(name, name.parent)]
         if not inside:
             raise OptionError(f"{name}: {_nothing_in(name)}")
         for item in inside:
-            found.setdefault(place_of_name(item.path), replace(item, common=common))
-    listed = {place_of_name(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
+            found.setdefault(folders.place_of(item.path), replace(item, common=common))
+    listed = {folders.place_of(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
     return [item for place, item in found.items() if place not in listed]
 
 
@@ -126,11 +127,11 @@ def _search(root: Path) -> list[Input]:
 
 def _walk(root: Path, errors: list[OSError]) -> Iterator[Path]:
     """All files that are not hidden, each folder in sorted order; folders behind links come last, and none twice."""
-    waiting, seen = deque([root]), set()
+    waiting, seen, places = deque([root]), set(), Folders()
     while waiting:
         for here, folders, files in os.walk(waiting.popleft(), onerror=errors.append):
             folder = Path(here)
-            place = place_of_name(folder / "file")
+            place = places.place_of(folder / "file")
             if place in seen:
                 folders.clear()
                 continue

@@ -16,7 +16,7 @@ from isocore.batches.naming import Naming, check_template, default_template, fol
 from isocore.batches.places import Places
 from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
-from isocore.errors import IsocoreError, OptionError
+from isocore.errors import OptionError, told
 from isocore.job import STDOUT, Job, Target
 from isocore.readers import ReadOptions, count_volumes, files_of, times_of
 
@@ -78,7 +78,7 @@ def _per_step(item: Input, pattern: Job, volumes: int | str | None, steps: StepC
     """One job per step of a series that is meant, and per volume; a series that cannot be read stays one job."""
     try:
         times = () if item.refusal else times_of(item.path)
-    except IsocoreError:
+    except Exception:  # converting it will say why
         times = ()
     if not times:
         return _per_volume(item, pattern, volumes)
@@ -94,7 +94,7 @@ def _per_volume(item: Input, pattern: Job, volumes: int | str | None) -> list[Jo
         return [pattern]
     try:
         count = count_volumes(item.path, pattern.read_options)
-    except IsocoreError:
+    except Exception:  # converting it will say why
         count = 1
     if count == 1:
         return [pattern]
@@ -122,7 +122,12 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
     if item.refusal:  # one row, whatever is asked of each file in the folder
         place = naming.output or folder_of(item, naming) / item.path.name
         return replace(pattern, source=item.path, targets=(Target(Auto(), place),), refusal=item.refusal)
-    choices = asked.of(item.path, pattern.read_options)
+    try:
+        choices = asked.of(item.path, pattern.read_options)
+    except OptionError:
+        raise
+    except Exception as error:
+        return _job(replace(item, refusal=told(item.path, error)), asked, pattern, naming)
     several = len(choices) > 1
     targets = tuple(
         Target(choice, output_of(item, choice, pattern, naming, several=several)) for choice in choices

@@ -68,7 +68,7 @@ def files_of(path: Path, step: int | None = None) -> tuple[Path, ...]:
         if step is not None and form.step_files is not None:
             return (path, *form.step_files(path, step))
         return (path, *form.files(path))
-    except (IsocoreError, OSError, ValueError, OverflowError):
+    except Exception:  # whatever a damaged header leads to
         return (path,)
 
 
