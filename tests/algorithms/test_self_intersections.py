@@ -90,6 +90,8 @@ def test_triangles_without_area_and_corners_without_a_place_meet_nothing():
     needle = [[1, 1, -1], [1, 1, 1], [1, 1, 0]]
     assert count([*FLAT, *needle], [[0, 1, 2], [3, 4, 5]]) == 0
     assert count([*FLAT, [1, 1, -1], [1, 1, 1], [2, np.nan, 1]], [[0, 1, 2], [3, 4, 5]]) == 0
+    crossing = [*FLAT, [1, 1, -1], [1, 1, 1], [2, 1, 1], [np.inf, 0, -np.inf], [np.nan] * 3]
+    assert count(crossing, [[0, 1, 2], [3, 4, 5], [0, 1, 6], [6, 2, 7]]) == 1
     assert count(np.zeros((0, 3)), np.zeros((0, 3))) == 0
 
 

@@ -126,6 +126,11 @@ bool meet(const Triangle& one, const Triangle& other) {
     return side_meets(one, other) || side_meets(other, one);
 }
 
+bool surely_apart_beyond_corner(const Triangle& one, const Triangle& other) {
+    return plane_separates(one, std::array<Vec3, 2>{other[1], other[2]}) ||
+           plane_separates(other, std::array<Vec3, 2>{one[1], one[2]});
+}
+
 bool meet_beyond_corner(const Triangle& one, const Triangle& other) {
     return segment_meets(other, one[1], one[2]) || segment_meets(one, other[1], other[2]);
 }

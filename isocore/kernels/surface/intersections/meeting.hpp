@@ -18,6 +18,9 @@ bool meet(const Triangle& one, const Triangle& other);
 // Triangles that share their first corners: do they have any other point in common?
 bool meet_beyond_corner(const Triangle& one, const Triangle& other);
 
+// The same, known in double precision alone: true where they certainly have none, whether or not they have area.
+bool surely_apart_beyond_corner(const Triangle& one, const Triangle& other);
+
 // Triangles that share their first two corners, in whichever order: do they have any point off that edge in common?
 bool meet_beyond_edge(const Triangle& one, const Triangle& other);
 

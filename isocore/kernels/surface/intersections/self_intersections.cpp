@@ -89,7 +89,6 @@ class PairCounter {
 
     // Decides by the places of the corners alone, whatever their numbers.
     static bool meets_beyond_shared(Triangle one, Triangle other) {
-        if (!intersections::has_area(one) || !intersections::has_area(other)) return false;
         std::size_t shared = 0;
         for (std::size_t n = 0; n < 3; ++n) {
             const auto found = std::find(other.begin() + static_cast<std::ptrdiff_t>(shared), other.end(), one[n]);
@@ -98,6 +97,8 @@ class PairCounter {
             std::swap(one[n], one[shared]);
             ++shared;
         }
+        if (shared == 1 && intersections::surely_apart_beyond_corner(one, other)) return false;
+        if (!intersections::has_area(one) || !intersections::has_area(other)) return false;
         if (shared == 0) return intersections::meet(one, other);
         if (shared == 1) return intersections::meet_beyond_corner(one, other);
         return shared == 3 || intersections::meet_beyond_edge(one, other);

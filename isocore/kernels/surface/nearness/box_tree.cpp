@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/parallel.hpp"
+#include "surface/size.hpp"
 
 namespace isocore::nearness {
 namespace {
@@ -57,6 +58,12 @@ Box box_around(const MeshView<Real>& mesh, const Frame& frame, std::size_t trian
 
 bool is_nothing(const Box& box) { return box.low[0] > box.high[0]; }
 
+// Where keys begin, and how many steps of them a length is.
+struct Cube {
+    std::array<float, 3> low;
+    float scale;
+};
+
 // The lowest ten bits, each followed by two zeros.
 std::uint32_t spread(std::uint32_t bits) {
     bits = (bits | bits << 16) & 0x030000FF;
@@ -65,12 +72,12 @@ std::uint32_t spread(std::uint32_t bits) {
     return (bits | bits << 2) & 0x09249249;
 }
 
-std::uint32_t key_of(const Box& box, const Box& all, float scale) {
+std::uint32_t key_of(const Box& box, const Cube& cube) {
     std::uint32_t key = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float place = ((box.low[axis] - all.low[axis]) + (box.high[axis] - all.low[axis])) * 0.5F * scale;
+        const float place = ((box.low[axis] - cube.low[axis]) + (box.high[axis] - cube.low[axis])) * 0.5F * cube.scale;
         const auto most = static_cast<float>((1U << kMortonBits) - 1);
-        key |= spread(static_cast<std::uint32_t>(std::clamp(place, 0.0F, most))) << axis;
+        key |= spread(static_cast<std::uint32_t>(place > 0 ? std::min(place, most) : 0)) << axis;
     }
     return key;
 }
@@ -119,6 +126,37 @@ Box joined(const Boxes& group) {
     return box;
 }
 
+// The cube around all vertices, in the tree's coordinates; a cube of nothing where that is not finite.
+template <class Real>
+Cube cube_around(const MeshView<Real>& mesh, const Frame& frame) {
+    const std::array<double, 6> all = bounds(mesh.vertices, mesh.vertex_count);
+    Cube cube{};
+    float longest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool is_float = sizeof(Real) == sizeof(float);
+        const double scale = is_float ? 1 : frame.scale, centre = is_float ? 0 : frame.centre[axis];
+        cube.low[axis] = static_cast<float>(all[axis] * scale - centre);
+        longest = std::max(longest, static_cast<float>(all[axis + 3] * scale - centre) - cube.low[axis]);
+    }
+    cube.scale = longest > 0 && std::isfinite(longest) ? static_cast<float>(1U << kMortonBits) / longest : 0;
+    return cube;
+}
+
+template <class Real>
+Array<Placed> placed_triangles(const MeshView<Real>& mesh, const Frame& frame, int threads) {
+    const Cube cube = cube_around(mesh, frame);
+    Array<Placed> placed(mesh.triangle_count);
+    parallel_for(threads, (mesh.triangle_count + kBlock - 1) / kBlock, [&](std::size_t block) {
+        for (std::size_t t = block * kBlock; t < std::min(mesh.triangle_count, (block + 1) * kBlock); ++t) {
+            const Box box = box_around(mesh, frame, t);
+            placed[t] = {is_nothing(box) ? kLeftOut : key_of(box, cube), static_cast<std::uint32_t>(t)};
+        }
+    });
+    sort(placed);
+    while (!placed.empty() && placed.back().key == kLeftOut) placed.pop_back();
+    return placed;
+}
+
 }  // namespace
 
 Frame frame_around(const std::array<double, 6>& bounds) {
@@ -127,42 +165,26 @@ Frame frame_around(const std::array<double, 6>& bounds) {
         if (std::isfinite(bound)) largest = std::max(largest, std::abs(bound));
     }
     Frame frame{largest > 0 ? std::ldexp(1.0, std::clamp(-std::ilogb(largest), -1000, 1000)) : 1.0, {}};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        frame.centre[axis] = (bounds[axis] * frame.scale + bounds[axis + 3] * frame.scale) / 2;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double centre = (bounds[axis] * frame.scale + bounds[axis + 3] * frame.scale) / 2;
+        frame.centre[axis] = std::isfinite(centre) ? centre : 0;
+    }
     return frame;
 }
 
 template <class Real>
 BoxTree::BoxTree(const MeshView<Real>& mesh, const Frame& frame, int threads) {
-    Array<Box> boxes(mesh.triangle_count);
-    const std::size_t blocks = (mesh.triangle_count + kBlock - 1) / kBlock;
-    std::vector<Box> parts(blocks, kNothing);
-    parallel_for(threads, blocks, [&](std::size_t block) {
-        for (std::size_t t = block * kBlock; t < std::min(mesh.triangle_count, (block + 1) * kBlock); ++t) {
-            boxes[t] = box_around(mesh, frame, t);
-            add(boxes[t], parts[block]);
-        }
-    });
-    Box all = kNothing;
-    for (const Box& part : parts) add(part, all);
-    float longest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) longest = std::max(longest, all.high[axis] - all.low[axis]);
-    const float scale = longest > 0 ? static_cast<float>(1U << kMortonBits) / longest : 0;
-
-    Array<Placed> placed(mesh.triangle_count);
-    parallel_for(threads, blocks, [&](std::size_t block) {
-        for (std::size_t t = block * kBlock; t < std::min(mesh.triangle_count, (block + 1) * kBlock); ++t) {
-            const std::uint32_t key = is_nothing(boxes[t]) ? kLeftOut : key_of(boxes[t], all, scale);
-            placed[t] = {key, static_cast<std::uint32_t>(t)};
-        }
-    });
-    sort(placed);
-    while (!placed.empty() && placed.back().key == kLeftOut) placed.pop_back();
-    order_.resize(placed.size());
-    for (std::size_t n = 0; n < placed.size(); ++n) order_[n] = placed[n].triangle;
-
+    {
+        const Array<Placed> placed = placed_triangles(mesh, frame, threads);
+        order_.resize(placed.size());
+        for (std::size_t n = 0; n < placed.size(); ++n) order_[n] = placed[n].triangle;
+    }
     levels_.push_back(empty_groups(std::max<std::size_t>(order_.size(), 1)));
-    for (std::size_t n = 0; n < order_.size(); ++n) put(boxes[order_[n]], n, levels_.back());
+    const std::size_t groups = levels_.back().size(), per_task = kBlock / kLanes;
+    parallel_for(threads, (groups + per_task - 1) / per_task, [&](std::size_t task) {
+        const std::size_t end = std::min(order_.size(), (task + 1) * kBlock);
+        for (std::size_t n = task * kBlock; n < end; ++n) put(box_around(mesh, frame, order_[n]), n, levels_.back());
+    });
     while (levels_.size() < 2 || levels_.back().size() > 1) {
         std::vector<Boxes> above = empty_groups(levels_.back().size());
         for (std::size_t n = 0; n < levels_.back().size(); ++n) put(joined(levels_.back()[n]), n, above);
