@@ -14,7 +14,7 @@ from isocore.cli.convert import convert
 from small_files import ball, write_nifti
 
 from isocore import _kernels
-from isocore.backends import extract
+from isocore.api import extract
 from isocore.measurements import measure
 from isocore.requirements import missed
 from isocore.surface import Surface

@@ -120,6 +120,30 @@ void no_diagonal_lies_in_a_face_on_both_sides() {
     }
 }
 
+// In a face with four crossings two diagonals cross if they join both pairs of parallel edges, whoever draws them.
+void no_two_diagonals_of_a_face_cross() {
+    for (int face = 0; face < 6; face += 2) {
+        std::array<std::set<int>, 2> axes;  // of the parallel edges that are joined, from above and from below
+        for_each_case([&](unsigned, unsigned, const Case& drawn) {
+            const auto open = rim(drawn);
+            std::array<std::set<int>, 2> here;
+            for (const auto& [a, b] : sides(drawn)) {
+                if (open.count({a, b}) || open.count({b, a}) || a / 4 != b / 4) continue;
+                for (const int side : {0, 1}) {
+                    if (cube::shared_face(a, b) == face + side) here[static_cast<std::size_t>(side)].insert(a / 4);
+                }
+            }
+            for (std::size_t side = 0; side < 2; ++side) {
+                CHECK(here[side].size() < 2);
+                axes[side].insert(here[side].begin(), here[side].end());
+            }
+        });
+        for (const int axis : axes[0]) {
+            for (const int other : axes[1]) CHECK(axis == other);
+        }
+    }
+}
+
 void a_single_inside_corner_is_cut_off_with_its_outside_in_front() {
     const Case& drawn = kTable.cases[kTable.corners[1].first];
     CHECK(drawn.triangles == 1);
@@ -134,5 +158,6 @@ void test_cell_loops() {
     a_case_is_a_manifold_with_the_counted_loops();
     a_face_is_drawn_by_its_own_corners_and_the_other_way_round_from_across();
     no_diagonal_lies_in_a_face_on_both_sides();
+    no_two_diagonals_of_a_face_cross();
     a_single_inside_corner_is_cut_off_with_its_outside_in_front();
 }

@@ -7,8 +7,9 @@
 //
 // A loop is cut into triangles by diagonals. A diagonal between two edges of one face lies in that face, and if the
 // cell across drew the same one, four triangles would share it. So such diagonals are avoided where they can be; where
-// not, they are shared out: between the two crossings on parallel edges along the face's lower axis only to the cell
-// above the face, all others only to the cell below. Then every loop can be cut without a vertex in its middle.
+// not, they are shared out: between crossings on parallel edges only to the cell above the face, between those on
+// adjacent edges only to the cell below. Then every loop can be cut without a vertex in its middle, and no two
+// diagonals cross: that takes both pairs of parallel edges, and no cell needs both.
 //
 // Cells of an unstructured mesh have no above and below, so their table (mesh_cases.cpp) draws no diagonal in a face at
 // all: a loop that cannot be cut so gets a vertex in its middle.
@@ -86,7 +87,7 @@ constexpr int diagonal_cost(int a, int b, FaceDiagonals rule) {
     const int face = cube::shared_face(a, b);
     if (face < 0) return cost;
     if (rule == FaceDiagonals::none) return cost + kForbidden;
-    const bool for_cell_above = a / 4 == b / 4 && a / 4 == cube::other_axes(face / 2)[0];
+    const bool for_cell_above = a / 4 == b / 4;
     const bool cell_is_above = (face & 1) == 0;
     return cost + (for_cell_above == cell_is_above ? kInFace : kForbidden);
 }

@@ -2,10 +2,7 @@
 // Two groups of one side that meet inside the cell turn the group between them into a ring around the joint, and the
 // two loops of that group into the ends of a tube. Its triangles form a strip, each with a side on one loop and its
 // tip on the other; a corner of the longer loop may be cut off first.
-//
-// The rule of derive_loops.hpp for diagonals in a face has no strip for some of them. Here the cell above the face has
-// the diagonals between crossings on parallel edges along either axis, except, in faces of axis 0, along axis 2: those
-// the disks of cells below do draw. All others are the cell below's, as there. Together the rules never meet.
+// Diagonals in faces are shared out as in derive_loops.hpp.
 #include "tables/tubes.hpp"
 
 #include <array>
@@ -61,14 +58,7 @@ constexpr bool can_meet(unsigned one, unsigned other) {
     return true;
 }
 
-constexpr int diagonal_cost(int a, int b) {
-    const int face = cube::shared_face(a, b);
-    const int cost = derivation::diagonal_cost(a, b, FaceDiagonals::none);
-    if (face < 0) return cost;
-    const bool for_cell_above = a / 4 == b / 4 && !(face / 2 == 0 && a / 4 == 2);
-    const bool cell_is_above = (face & 1) == 0;
-    return cost - (for_cell_above == cell_is_above ? kForbidden - derivation::kInFace : 0);
-}
+constexpr int diagonal_cost(int a, int b) { return derivation::diagonal_cost(a, b, FaceDiagonals::shared_out); }
 
 // The cheapest strip between two loops, found by trying all ways round. It starts at ahead[0] and back[start].
 struct Strip {
