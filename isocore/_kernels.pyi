@@ -280,7 +280,7 @@ class JoinedPoints(NamedTuple):
     with_: _Int32  # (n,) the lowest point that each is joined with, itself where that is none
     joined: int  # points that are joined with another
 
-def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...
+def join_points(points: _Float64, distance: float = 0.0, threads: int = 1) -> JoinedPoints: ...
 class LabelCensus(NamedTuple):
     values: _Float64  # ascending
     counts: npt.NDArray[np.uint64]  # samples of each

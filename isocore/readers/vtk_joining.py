@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy.typing as npt
 
 from isocore import _kernels
 
+_MOST_THREADS = 4  # readers are not told how many there may be; it is a matter of milliseconds
 #: Values differ by rounding where they differ by less than this part of the largest: sixteen steps of float32.
 _ROUNDING = 16 * 2.0**-23
 
@@ -43,7 +45,7 @@ class JoinedValues:
 
 def joining(points: npt.NDArray[np.float64], distance: float) -> Joining | None:
     """Points at equal coordinates, or within `distance`; None where there are none. Linear in the points."""
-    found = _kernels.join_points(points, distance)
+    found = _kernels.join_points(points, distance, min(_MOST_THREADS, os.cpu_count() or 1))
     if not found.joined:
         return None
     own = found.with_ == np.arange(len(points), dtype=np.int32)

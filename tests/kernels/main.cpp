@@ -18,6 +18,7 @@ void test_climbing();
 void test_marching_cubes();
 void test_tubes();
 void test_thinning();
+void test_joining();
 
 int main() {
     test_bits();
@@ -37,5 +38,6 @@ int main() {
     test_marching_cubes();
     test_tubes();
     test_thinning();
+    test_joining();
     std::puts("kernels: all checks hold");
 }

@@ -1,48 +1,46 @@
-// join_points.cpp - Open addressing in a table twice as long as there are points. A slot holds a point and half of its
-// hash, so that a look at the point itself, which lies elsewhere in memory, is seldom in vain; slots are fetched ahead.
+// join_points.cpp - Open addressing. A slot holds a point and half of its hash, so that a look at the point itself,
+// which lies elsewhere in memory, is seldom in vain. Equal points are sorted into buckets by their hash first, so that
+// each table stays in the cache.
 #include "joining/join_points.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "common/parallel.hpp"
 
 namespace isocore {
 namespace {
 
 constexpr std::int32_t kNone = -1;
-constexpr std::size_t kAhead = 32;
+constexpr std::size_t kPointsPerBucket = 2048, kMostBuckets = 4096, kPointsPerChunk = std::size_t{1} << 18;
 
 using Place = std::array<double, 3>;
 
-std::uint64_t scrambled(std::uint64_t bits) {
-    bits ^= bits >> 32;
-    bits *= 0xd6e8feb86659fd93u;
-    return bits ^ bits >> 29;
-}
-
-// Equal places have equal hashes: adding 0.0 turns -0.0 into 0.0.
+// Equal places have equal hashes: adding 0.0 turns -0.0 into 0.0. The low bits of coordinates are often zeros, so the
+// high ones are folded down before they are multiplied.
 std::uint64_t hash(const Place& place) {
+    constexpr std::array<std::uint64_t, 3> kFactors{0x9e3779b97f4a7c15u, 0xd6e8feb86659fd93u, 0xbf58476d1ce4e5b9u};
     std::uint64_t sum = 0;
-    for (const double coordinate : place)
-        sum = scrambled(sum + 0x9e3779b97f4a7c15u + std::bit_cast<std::uint64_t>(coordinate + 0.0));
-    return sum;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto bits = std::bit_cast<std::uint64_t>(place[axis] + 0.0);
+        sum += (bits ^ bits >> 31) * kFactors[axis];
+    }
+    sum ^= sum >> 32;
+    sum *= 0x94d049bb133111ebu;
+    return sum ^ sum >> 29;
 }
 
 // The points entered so far by a place: their own coordinates, or the grid cell they lie in.
 class Table {
   public:
     explicit Table(std::size_t count) : slots_(std::bit_ceil(2 * count + 2), Slot{0, kNone}) {}
-
-    void fetch(std::uint64_t hash) const {
-#if defined(__GNUC__)
-        __builtin_prefetch(&slots_[hash & (slots_.size() - 1)]);
-#else
-        (void)hash;
-#endif
-    }
 
     // The point whose place is the same, or the empty slot where it belongs, which then holds it.
     template <class Same>
@@ -80,26 +78,95 @@ Place place_of(const double* points, std::size_t point) {
     return {points[3 * point], points[3 * point + 1], points[3 * point + 2]};
 }
 
-JoinedPoints join_equal(const double* points, std::size_t count) {
+// The points of each bucket, so few that their table stays in the cache; in each they keep their order.
+struct Buckets {
+    struct Entry {
+        std::uint64_t hash;
+        std::int32_t point;
+    };
+    std::size_t count;
+    std::vector<std::size_t> start;  // of every bucket, and the end of the last
+    Array<Entry> entries;
+};
+
+// Chunks of points are sorted apart: a count says where each chunk's points of each bucket go.
+Buckets bucketed(const double* points, std::size_t count, int threads) {
+    Buckets buckets{std::clamp<std::size_t>(std::bit_ceil(count / kPointsPerBucket + 1), 1, kMostBuckets), {}, {}};
+    const std::size_t mask = buckets.count - 1, chunks = count / kPointsPerChunk + 1;
+    const auto for_chunk = [&](std::size_t chunk, const auto& work) {
+        const std::size_t end = std::min(count, (chunk + 1) * kPointsPerChunk);
+        for (std::size_t point = chunk * kPointsPerChunk; point < end; ++point) work(point);
+    };
+    Array<std::uint64_t> hashes(count);
+    std::vector<std::vector<std::uint32_t>> places(chunks);
+    parallel_for(threads, chunks, [&](std::size_t chunk) {
+        places[chunk].resize(buckets.count);
+        for_chunk(chunk, [&](std::size_t point) {
+            hashes[point] = hash(place_of(points, point));
+            ++places[chunk][hashes[point] & mask];
+        });
+    });
+    std::uint32_t start = 0;
+    for (std::size_t bucket = 0; bucket < buckets.count; ++bucket) {
+        buckets.start.push_back(start);
+        for (auto& of_chunk : places) start += std::exchange(of_chunk[bucket], start);
+    }
+    buckets.start.push_back(start);
+    buckets.entries.resize(count);
+    parallel_for(threads, chunks, [&](std::size_t chunk) {
+        for_chunk(chunk, [&](std::size_t point) {
+            buckets.entries[places[chunk][hashes[point] & mask]++] = {hashes[point], static_cast<std::int32_t>(point)};
+        });
+    });
+    return buckets;
+}
+
+// Joins points of equal hashes, which may be different points once in a million meshes.
+JoinedPoints join_alike(const double* points, std::size_t count, int threads) {
+    JoinedPoints result;
+    result.with.resize(count);
+    const Buckets buckets = bucketed(points, count, threads);
+    std::atomic<std::size_t> joined = 0;
+    parallel_for(threads, buckets.count, [&](std::size_t bucket) {
+        const std::size_t first = buckets.start[bucket], end = buckets.start[bucket + 1];
+        std::vector<Buckets::Entry> slots(std::bit_ceil(2 * (end - first) + 2), {0, kNone});
+        std::size_t found = 0;
+        for (std::size_t n = first; n < end; ++n) {
+            const Buckets::Entry entry = buckets.entries[n];
+            std::size_t slot = entry.hash >> 32 & (slots.size() - 1);
+            while (slots[slot].point != kNone && slots[slot].hash != entry.hash) slot = (slot + 1) & (slots.size() - 1);
+            if (slots[slot].point == kNone) slots[slot] = entry;
+            result.with[static_cast<std::size_t>(entry.point)] = slots[slot].point;
+            found += slots[slot].point != entry.point;
+        }
+        joined += found;
+    });
+    result.joined = joined;
+    return result;
+}
+
+// The same with a look at every point: slow where these lie apart in memory.
+JoinedPoints join_looking(const double* points, std::size_t count) {
     JoinedPoints result;
     result.with.resize(count);
     Table table(count);
-    std::array<std::uint64_t, kAhead> hashes;
-    for (std::size_t first = 0; first < count; first += kAhead) {
-        const std::size_t end = std::min(count, first + kAhead);
-        for (std::size_t point = first; point < end; ++point) {
-            hashes[point - first] = hash(place_of(points, point));
-            table.fetch(hashes[point - first]);
-        }
-        for (std::size_t point = first; point < end; ++point) {
-            const Place place = place_of(points, point);
-            const auto same = [&](std::int32_t other) {
-                return place_of(points, static_cast<std::size_t>(other)) == place;
-            };
-            const auto id = static_cast<std::int32_t>(point);
-            result.with[point] = table.find_or_enter(hashes[point - first], id, same);
-            result.joined += result.with[point] != id;
-        }
+    for (std::size_t point = 0; point < count; ++point) {
+        const Place place = place_of(points, point);
+        const auto id = static_cast<std::int32_t>(point);
+        result.with[point] = table.find_or_enter(hash(place), id, [&](std::int32_t other) {
+            return place_of(points, static_cast<std::size_t>(other)) == place;
+        });
+        result.joined += result.with[point] != id;
+    }
+    return result;
+}
+
+JoinedPoints join_equal(const double* points, std::size_t count, int threads) {
+    JoinedPoints result = join_alike(points, count, threads);
+    if (result.joined == 0) return result;
+    for (std::size_t point = 0; point < count; ++point) {
+        const auto with = static_cast<std::size_t>(result.with[point]);
+        if (with != point && place_of(points, with) != place_of(points, point)) return join_looking(points, count);
     }
     return result;
 }
@@ -168,14 +235,14 @@ class Near {
 
 }  // namespace
 
-JoinedPoints join_points(const double* points, std::size_t count, double distance) {
+JoinedPoints join_points(const double* points, std::size_t count, double distance, int threads) {
     if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
         throw std::length_error("a mesh has at most 2^31 - 1 points");
     }
     double farthest = 0;
     for (std::size_t n = 0; n < 3 * count; ++n) farthest = std::max(farthest, std::abs(points[n]));
     // Where the distance is below the coordinates' own steps only equal points lie within it.
-    if (!(distance > 0x1p-52 * farthest)) return join_equal(points, count);
+    if (!(distance > 0x1p-52 * farthest)) return join_equal(points, count, threads);
     Near near(points, count, distance);
     JoinedPoints result;
     result.with.resize(count);

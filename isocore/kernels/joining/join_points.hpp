@@ -3,6 +3,7 @@
 // is none: exactly equal coordinates for a distance of 0 (-0.0 equals 0.0), else the lowest point not joined with
 // another that lies within `distance`. So no two points that stand for others lie within the distance, and no chain of
 // small steps joins what lies farther apart. Linear in the number of points.
+// The same result for any number of threads, which help with equal points only.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +19,6 @@ struct JoinedPoints {
 };
 
 // Throws std::length_error for more points than an int32 can name.
-JoinedPoints join_points(const double* points, std::size_t count, double distance);
+JoinedPoints join_points(const double* points, std::size_t count, double distance, int threads = 1);
 
 }  // namespace isocore

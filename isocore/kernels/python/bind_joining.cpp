@@ -1,4 +1,4 @@
-// bind_joining.cpp - join_points(points, distance): which points of a mesh coincide.
+// bind_joining.cpp - join_points(points, distance, threads): which points of a mesh coincide.
 #include "joining/join_points.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -10,15 +10,15 @@ void bind_joining(nb::module_& module) {
     const NamedTuple joined_points(module, "JoinedPoints", {"with_", "joined"});
     module.def(
         "join_points",
-        [=](const Rows<double, 3>& points, double distance) {
+        [=](const Rows<double, 3>& points, double distance, int threads) {
             JoinedPoints found;
             {
                 const nb::gil_scoped_release unlocked;
-                found = join_points(points.data(), points.shape(0), distance);
+                found = join_points(points.data(), points.shape(0), distance, threads);
             }
             return joined_points(to_numpy(std::move(found.with)), found.joined);
         },
-        nb::arg("points").noconvert(), nb::arg("distance") = 0.0);
+        nb::arg("points").noconvert(), nb::arg("distance") = 0.0, nb::arg("threads") = 1);
 }
 
 }  // namespace isocore::python
