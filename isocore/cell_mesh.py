@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from isocore.errors import FieldError
+from isocore.errors import FieldError, printable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +85,7 @@ class CellMesh:
             raise FieldError("a mesh needs at least one tetrahedron or hexahedron")
         for array in (self.points, self.tets, self.hexes, self.values):
             array.flags.writeable = False
+        object.__setattr__(self, "warnings", tuple(map(printable, self.warnings)))
 
     def __repr__(self) -> str:
         """How large it is, and what its values are."""

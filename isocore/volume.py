@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from isocore.arrays import samples_of
 from isocore.digits import exact
-from isocore.errors import FieldError, OptionError
+from isocore.errors import FieldError, OptionError, printable
 
 Space = Literal["ras", "lps", "las", "index", "native"]
 
@@ -129,6 +129,7 @@ class Volume:
         affine.flags.writeable = False
         samples.flags.writeable = False
         object.__setattr__(self, "affine", affine)
+        object.__setattr__(self, "warnings", tuple(map(printable, self.warnings)))
 
     @property
     def shape(self) -> tuple[int, int, int]:

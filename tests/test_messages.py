@@ -10,13 +10,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from small_files import ball, write_nifti
 
+from isocore.cell_mesh import CellMesh
 from isocore.errors import LONGEST, InputError, OptionError, about, one_line, printable, reading, shortened
 from isocore.job import Job, Target
 from isocore.pipeline import failed
 from isocore.report import BatchReport, github_annotations
+from isocore.volume import Volume
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()"]
 NASTY = "a\nb\r\x1b[31m\x9b2J\x85\u2028\u202e\ud800\udcff\t\x00z"
@@ -110,3 +113,12 @@ def test_an_annotation_holds_no_second_command() -> None:
     job = Job(source=Path("a,b:c\n::x.nii"), targets=(Target("50", Path("x.ply")),))
     (line,) = github_annotations(BatchReport((failed(job, job.targets[0], InputError("50%\nlost")),)))
     assert line == r"::error file=a%2Cb%3Ac%0A%3A%3Ax.nii,title=isocore::a,b:c\n::x.nii: 50%25\nlost"
+
+
+def test_a_warning_about_a_field_is_printable_whatever_the_file_calls_it() -> None:
+    """A name out of a file moves no cursor in the report of warnings either."""
+    warning = "p\x1b[31m\n\x85\u202e is not finite"
+    volume = Volume(np.zeros((2, 2, 2), np.float32, order="F"), warnings=(warning,))
+    points, tets = np.zeros((4, 3)), np.array([[0, 1, 2, 3]], np.int32)
+    mesh = CellMesh(points, tets, np.empty((0, 8), np.int32), np.zeros(4), warnings=(warning,))
+    assert volume.warnings == mesh.warnings == ("p\\x1b[31m\\n\\x85\\u202e is not finite",)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from xml.parsers import expat
 
@@ -49,9 +50,17 @@ def beside(path: Path, name: str) -> Path:
 
 
 def refuse_missing(path: str, files: list[Path], what: str) -> None:
-    """InputError that names the first file that is not there, and says how many are not. what: pieces, as a rule."""
+    """InputError where a file is not there, or named twice: a short list of one piece over and over is a huge mesh.
+
+    what: pieces, as a rule.
+    """
     missing = [file for file in files if not file.is_file()]
     if missing:
         many = f"{len(missing):,} of its {len(files):,} {what} are missing, the first is"
         one = f"one of its {len(files):,} {what} is missing,"
         raise InputError(f"{path}: {one if len(missing) == 1 else many} {missing[0]}; copy it there")
+    places: set[str] = set()
+    for file in files:
+        if (place := os.path.realpath(file)) in places:
+            raise InputError(f"{path}: names {file} twice among its {len(files):,} {what}; leave one out")
+        places.add(place)

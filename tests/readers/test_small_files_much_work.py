@@ -200,3 +200,14 @@ def _vtu(
         b'<AppendedData encoding="raw">_' + b"".join(blocks) + b"</AppendedData></VTKFile>"
     )
     return path
+
+
+@pytest.mark.parametrize("name", ["p.vtu", "./p.vtu", "link.vtu"])
+def test_one_piece_over_and_over_is_refused(tmp_path: Path, name: str) -> None:
+    """A list of a few bytes per piece would else be a mesh of any size."""
+    _vtu(tmp_path / "p.vtu", [_block([np.arange(6.0).tobytes()], 48)])
+    (tmp_path / "link.vtu").symlink_to("p.vtu")
+    path = tmp_path / "a.pvtu"
+    pieces = '<Piece Source="p.vtu"/>' + f'<Piece Source="{name}"/>' * 20_000
+    path.write_text(f'<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>{pieces}</PUnstructuredGrid></VTKFile>')
+    assert refused(path, 1 << 25).endswith("p.vtu twice among its 20,001 pieces; leave one out") or name == "link.vtu"
