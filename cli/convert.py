@@ -164,6 +164,9 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         topology=asked.topology,
         smooth=asked.smooth or None,
         background=asked.background,
+        keep_largest=asked.keep_largest,
+        min_piece=asked.min_piece,
+        fill_bubbles=asked.fill_bubbles,
     )
     backend = "labels" if asked.labels is not None else None if asked.backend == "auto" else asked.backend
     if backend is not None:

@@ -11,7 +11,7 @@ from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
 from .values import Colour, Isovalue, Jobs, LabelList, Memory, StepNumbers, Times, Words
 
-_input, _isovalue, _, _output, _batch, _report = map(option_of, GROUPS)
+_input, _isovalue, _, _, _output, _batch, _report = map(option_of, GROUPS)
 
 INPUT = (
     click.argument("inputs", nargs=-1, type=PATH, metavar="INPUT..."),

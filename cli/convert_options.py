@@ -12,9 +12,11 @@ import click
 
 from isocore.choices import About, Choice, Format, MaxError
 from isocore.labels import Labels
+from isocore.piece_sizes import MinPiece
 
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
 from .convert_method import METHOD
+from .convert_pieces import PIECES
 from .options import Reading, default_threads, with_all
 from .values import Range
 
@@ -44,6 +46,9 @@ class ConvertOptions:
     topology: str | None
     smooth: int | None
     cap: bool
+    keep_largest: int | None
+    min_piece: MinPiece | None
+    fill_bubbles: bool
     output: Path | None
     output_dir: Path | None
     format: Format | None
@@ -87,4 +92,4 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
     def with_record(context: click.Context, /, **values: Any) -> None:
         command(context, ConvertOptions(**values))
 
-    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *OUTPUT, *BATCH, *REPORT))
+    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *OUTPUT, *BATCH, *REPORT))

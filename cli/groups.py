@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 #: In the order of the help; options of no group come last.
-GROUPS = ("Input", "Isovalue", "Method", "Output", "Batch", "Report")
+GROUPS = ("Input", "Isovalue", "Method", "Pieces", "Output", "Batch", "Report")
 REST = "Other"
 
 

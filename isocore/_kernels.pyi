@@ -145,6 +145,18 @@ def format_faces(triangles: _Int32, with_normals: bool, threads: int = 1) -> byt
 def stl_records(vertices: _Real, triangles: _Int32, threads: int = 1) -> _Bytes: ...
 def ply_faces(triangles: _Int32, threads: int = 1) -> _Bytes: ...
 
+# shells: the parts of a mesh that share no vertex, in the order of their first vertices
+class Shells(NamedTuple):
+    of_vertex: _Int32  # (v,): the number of its shell; -1 for a vertex that no triangle uses
+    triangles: npt.NDArray[np.int64]  # (s,), as all below: how many
+    areas: _Float64
+    volumes: _Float64  # signed; means something only where closed
+    closed: _Bytes  # 1 or 0
+    around: _Int32  # the smallest closed shell around it, or -1
+    piece: _Int32  # the outer shell of its piece: itself, unless it is a bubble
+
+def shells(vertices: _Real, triangles: _Int32, threads: int = 1) -> Shells: ...
+
 class MarchedMesh(NamedTuple):
     vertices: _Real  # the mesh's space; float32 if `single`
     triangles: _Int32

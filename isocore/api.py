@@ -21,6 +21,8 @@ from isocore.extraction import Outlook
 from isocore.histogram import histogram
 from isocore.isovalue import choose
 from isocore.job import Options
+from isocore.piece_sizes import parse_min_piece
+from isocore.pieces import check_unit, keep_pieces
 from isocore.surface import Surface
 from isocore.volume import Volume
 
@@ -41,6 +43,9 @@ def extract(
     block_size: int | None = None,
     topology: Topology | None = None,
     smooth: int | None = None,
+    keep_largest: int | None = None,
+    min_piece: int | str | None = None,
+    fill_bubbles: bool = False,
     cap: bool = False,
     normals: bool = False,
     threads: int = 1,
@@ -53,6 +58,8 @@ def extract(
     max_error: asc, how far marching cubes' vertices may lie from the surface: voxels (0.25), or a text as "0.3mm".
     block_size: asc, cells along the edge of the largest box. topology: mc, as in Options.
     smooth: rounds of smoothing, in which no sample changes sides; of a volume, by mc.
+    keep_largest: of the surface's pieces, so many of the largest. min_piece: drop those of fewer triangles, or of a
+        smaller volume, as "20mm3". fill_bubbles: drop the inner shells of the pieces kept.
     cap: close the surface at the volume's border. normals: compute vertex normals.
     threads: at least 1; the surface is the same for any number.
     options: all of these in one object; then they are not looked at.
@@ -63,14 +70,17 @@ def extract(
         kind = type(field).__name__
         raise OptionError(f"field: is a {kind}, not a Volume or CellMesh; see Volume.from_array and read")
     with arguments_named():
-        asked = options or options_of(threads, cap, normals, block_size, max_error, topology, smooth)
+        asked = options or options_of(
+            threads, cap, normals, block_size, max_error, topology, smooth, keep_largest, min_piece, fill_bubbles
+        )
+        check_unit(asked, field.unit)
         outlook = Outlook(isovalues=1, named=backend is not None)
         default = "mc" if asked.smooth else default_backend(type(field), outlook)[0]
         extract_ = prepare(field, backend or default, asked, outlook)
         choice = parse_choice(isovalue) if isinstance(isovalue, str) else choices_of(isovalue)[0]
-        if isinstance(choice, Number):
-            return extract_(choice.value).surface
-        return extract_(choose(choice, histogram(field, threads=asked.threads)).isovalue).surface
+        if not isinstance(choice, Number):
+            choice = Number(choose(choice, histogram(field, threads=asked.threads)).isovalue, str(choice))
+        return keep_pieces(extract_(choice.value).surface, asked).surface
 
 
 def choices_of(isovalue: Isovalue) -> tuple[Choice, ...]:
@@ -94,6 +104,9 @@ def options_of(
     max_error: float | str | None,
     topology: Topology | None,
     smooth: int | None,
+    keep_largest: int | None = None,
+    min_piece: int | str | None = None,
+    fill_bubbles: bool = False,
 ) -> Options:
     """The options as the methods know them."""
     if smooth is not None and not (isinstance(smooth, int) and smooth >= 0):
@@ -106,6 +119,9 @@ def options_of(
         max_error=_bound(max_error),
         topology=topology,
         smooth=smooth or None,
+        keep_largest=None if keep_largest is None else at_least_one("keep_largest", keep_largest),
+        min_piece=None if min_piece is None else parse_min_piece(str(min_piece)),
+        fill_bubbles=fill_bubbles,
     )
 
 

@@ -117,6 +117,28 @@ class LabelFacts:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pieces:
+    """What was kept of a surface's pieces, which are solids with their bubbles.
+
+    found: pieces before. dropped: pieces that were too small; swallowed: those in bubbles that were filled; open: of
+    those found, the ones that end at the volume's border. triangles_dropped, vertices_dropped: with all of them and
+    with the filled bubbles. volume_dropped, volume_filled: in cubed units of length, of what is closed; the volume
+    after is that before - dropped + filled.
+    """
+
+    found: int
+    kept: int
+    dropped: int
+    swallowed: int
+    bubbles_filled: int
+    open: int
+    triangles_dropped: int
+    vertices_dropped: int
+    volume_dropped: float
+    volume_filled: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Findings:
     """What a method has to say about one surface, by the report's keys; facts: what no other key covers."""
 
@@ -126,6 +148,7 @@ class Findings:
     ambiguous: Ambiguous | None = None
     climbing: Climbing | None = None
     label: LabelFacts | None = None
+    pieces: Pieces | None = None
     facts: dict[str, Any] = field(default_factory=dict)
 
 
@@ -142,7 +165,7 @@ class Extraction:
     def facts(self) -> dict[str, Any]:
         """The findings as they stand in the report; what there is nothing to say about is left out."""
         found = self.findings
-        names = ("simplification", "error", "search", "ambiguous", "climbing", "label")
+        names = ("simplification", "error", "search", "ambiguous", "climbing", "label", "pieces")
         parts = {name: getattr(found, name) for name in names}
         return {key: keys_of(part) for key, part in parts.items() if part is not None} | found.facts
 

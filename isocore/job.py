@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from isocore.choices import SHADED_FORMATS, About, Choice, Format, MaxError, parse_about, parse_choice, parse_max_error
+from isocore.piece_sizes import MinPiece, parse_min_piece
 from isocore.readers.options import ReadOptions
 from isocore.volume import Space
 
@@ -28,6 +29,8 @@ class Options:
         trilinear function does.
     smooth: rounds of smoothing, in which no sample changes sides.
     background: the label that is none; 0 by default. Of label maps only.
+    keep_largest: keep so many of the largest pieces of each surface. min_piece: keep those that are as large; a text
+        is parsed. fill_bubbles: drop the inner shells of the pieces kept.
     """
 
     threads: int = 1
@@ -40,10 +43,15 @@ class Options:
     topology: str | None = None
     smooth: int | None = None
     background: int | None = None
+    keep_largest: int | None = None
+    min_piece: MinPiece | None = None
+    fill_bubbles: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.max_error, str):
             object.__setattr__(self, "max_error", parse_max_error(self.max_error))
+        if isinstance(self.min_piece, str):
+            object.__setattr__(self, "min_piece", parse_min_piece(self.min_piece))
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,9 @@ def convert_files(
     block_size: int | None = None,
     topology: Topology | None = None,
     smooth: int | None = None,
+    keep_largest: int | None = None,
+    min_piece: int | str | None = None,
+    fill_bubbles: bool = False,
     cap: bool = False,
     normals: bool | None = None,
     threads: int | None = None,
@@ -82,7 +85,10 @@ def convert_files(
             targets=(),
             format=format,
             backend=backend,
-            options=options or options_of(share, cap, normals, block_size, max_error, topology, smooth),
+            options=options
+            or options_of(
+                share, cap, normals, block_size, max_error, topology, smooth, keep_largest, min_piece, fill_bubbles
+            ),
             read_options=_reading(read_options, volume),
             space=space,
             reference=reference,

@@ -9,14 +9,18 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
-from isocore.errors import writing
+from isocore.ambiguities import find_ambiguities
+from isocore.errors import OptionError, writing
+from isocore.extraction import Field
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
 from isocore.report.sections import Written
-from isocore.surface import Part, Surface, joined
+from isocore.surface import Part, Point, Surface, joined
+from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import WRITERS
 from isocore.writers.obj import write_materials, write_obj
+from isocore.writers.ply import write_ply_points
 
 _NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --normals adds none; write PLY or OBJ"
 
@@ -86,6 +90,25 @@ def materials_of(output: Path, job: Job) -> Path | None:
     """The file beside an OBJ that holds colours, where there are any to hold."""
     coloured = job.colour is not None or any(isinstance(target.choice, Label) for target in job.targets)
     return output.with_suffix(".mtl") if job.format == "obj" and coloured and output != STDOUT else None
+
+
+def write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | None) -> None:
+    """Write the faces that could be drawn in two ways, where the job asks for them."""
+    if job.ambiguities is None:
+        return
+    if not isinstance(source, Volume):
+        raise OptionError(f"--ambiguities {job.ambiguities}: is for volumes only; leave it out")
+    found = find_ambiguities(source, isovalue, threads=job.options.threads)
+    with whole_file(job.ambiguities) as stream:
+        write_ply_points(
+            stream,
+            found.points,
+            "saddle_distance",
+            found.distances,
+            space=found.space,
+            unit=found.unit,
+            offset=offset if offset and any(offset) else None,
+        )
 
 
 class _Hashed:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from isocore.ambiguities import find_ambiguities
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
-from isocore.errors import FieldError, InputError, IsocoreError, OptionError, about
+from isocore.errors import FieldError, InputError, IsocoreError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
@@ -18,7 +17,8 @@ from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
-from isocore.outputs import Sink, format_warnings
+from isocore.outputs import Sink, format_warnings, write_ambiguities
+from isocore.pieces import check_unit, keep_pieces
 from isocore.readers import files_of, read
 from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
@@ -26,11 +26,8 @@ from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
 from isocore.requirements import missed
 from isocore.rounded_error import remeasured
 from isocore.segmentation import isovalue_warnings, label_count
-from isocore.surface import Point
 from isocore.timer import Timer
 from isocore.volume import Volume
-from isocore.whole_file import whole_file
-from isocore.writers.ply import write_ply_points
 from isocore.writers.rounding import as_read, rounded
 
 
@@ -65,6 +62,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
             spread = histogram(source, threads=threads)
             offset = offset_of(source, job.offset)
             source = moved_field(source, offset)
+        check_unit(job.options, source.unit)
         known = FieldFacts.of(source, spread)
         labels = label_count(source, spread)
         outlook = _outlook(job)
@@ -80,29 +78,32 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     found = extract(chosen.isovalue)
                 timer.move(found.seconds_normals, "extract", "normals")
                 with timer("measure"):
-                    exact = moved_surface(found.surface, source, offset)
-                    surface, losses = rounded(exact, job.format, threads)
+                    kept = keep_pieces(moved_surface(found.surface, source, offset), job.options)
+                    surface, losses = rounded(kept.surface, job.format, threads)
                     form = as_read(surface, job.format, threads)
                     measured = measure(form, threads, self_intersections=job.counts_intersections)
-                    findings = found.findings
-                    if surface is not exact:
-                        findings = remeasured(findings, source, chosen.isovalue, surface, job.options)
+                    findings = replace(found.findings, pieces=kept.facts)
+                    if surface is not kept.surface:
+                        whole = surface if kept.is_whole else rounded(kept.whole, job.format, threads)[0]
+                        findings = remeasured(findings, source, chosen.isovalue, whole, job.options)
+                        del whole
                 with timer("write"):
                     written = sink.write(surface, target)
-                    _write_ambiguities(source, chosen.isovalue, job, offset)
+                    write_ambiguities(source, chosen.isovalue, job, offset)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
                 run = RunReport(
                     asked=_asked(job, target),
                     status="done" if measured.triangles else "empty",
-                    message="" if measured.triangles else emptiness(chosen, spread),
+                    message="" if measured.triangles else kept.message or emptiness(chosen, spread),
                     warnings=source.warnings
                     + known.warnings
                     + chosen.warnings
                     + isovalue_warnings(chosen, spread, labels)
                     + found.warnings
                     + format_warnings(job)
+                    + kept.warnings
                     + border(measured, known)
                     + losses,
                     written=written,
@@ -117,7 +118,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                 )
-                del found, exact, surface, form
+                del found, kept, surface, form
                 yield requirements_checked(reference.compared(run), job)
             done += 1
     except (IsocoreError, MemoryError) as error:
@@ -163,6 +164,9 @@ def _asked(job: Job, target: Target) -> Asked:
             topology=options.topology,
             smooth=options.smooth,
             background=options.background,
+            keep_largest=options.keep_largest,
+            min_piece=None if options.min_piece is None else str(options.min_piece),
+            fill_bubbles=options.fill_bubbles or None,
             format=job.format,
             space=job.space,
             offset=None if job.offset is None else str(job.offset),
@@ -192,24 +196,6 @@ def _outlook(job: Job) -> Outlook:
     return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
 
 
-def _write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | None) -> None:
-    if job.ambiguities is None:
-        return
-    if not isinstance(source, Volume):
-        raise OptionError(f"--ambiguities {job.ambiguities}: is for volumes only; leave it out")
-    found = find_ambiguities(source, isovalue, threads=job.options.threads)
-    with whole_file(job.ambiguities) as stream:
-        write_ply_points(
-            stream,
-            found.points,
-            "saddle_distance",
-            found.distances,
-            space=found.space,
-            unit=found.unit,
-            offset=offset if offset and any(offset) else None,
-        )
-
-
 class _ReferenceRuns:
     """Marching cubes on the same field, prepared at the first target that needs it."""
 
@@ -224,15 +210,19 @@ class _ReferenceRuns:
         if not self._wanted or run.isovalue is None or run.surface is None or run.seconds is None:
             return run
         own_seconds = run.seconds.prepare + run.seconds.extract
+        own_triangles, own_vertices = run.surface.triangles, run.surface.vertices
+        if (pieces := run.findings.pieces) is not None:  # the reference has all pieces
+            own_triangles += pieces.triangles_dropped
+            own_vertices += pieces.vertices_dropped
         if self._backend == REFERENCE and run.findings.simplification is None:
-            triangles, vertices, seconds = run.surface.triangles, run.surface.vertices, own_seconds
+            triangles, vertices, seconds = own_triangles, own_vertices, own_seconds
         else:
             triangles, vertices, seconds = self._extracted(run.isovalue)
         return replace(
             run,
             reference=Reference(name=REFERENCE, triangles=triangles, vertices=vertices, seconds=seconds),
             ratio=Ratio(
-                triangles=triangles / run.surface.triangles if run.surface.triangles else None,
+                triangles=triangles / own_triangles if own_triangles else None,
                 seconds=own_seconds / seconds if seconds else None,
             ),
         )

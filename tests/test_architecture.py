@@ -16,7 +16,7 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "digits", "choices", "labels"} | {
+NOUNS = {"errors", "version", "digits", "choices", "labels", "piece_sizes"} | {
     "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
@@ -24,7 +24,7 @@ FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "rema
 #: What the one path is made of.
 STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
 #: What becomes of coordinates on their way to the file.
-PLACES = {"offset", "outputs", "rounded_error"}
+PLACES = {"offset", "outputs", "pieces", "rounded_error"}
 #: Importing one file of a batch tells nothing about another: each says for itself what it knows of the others.
 BATCHED = NOUNS | {"report", "whole_file"}
 
@@ -37,6 +37,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "digits": set(),
     "choices": {"digits", "errors", "labels"},
     "labels": {"errors"},
+    "piece_sizes": {"choices", "errors"},
     "whole_file": {"errors"},
     "arrays": {"errors"},
     "volume": {"arrays", "digits", "errors"},
@@ -45,7 +46,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "surface": {"exchange", "volume"} | KERNELS,
     "measurements": {"surface"} | KERNELS,
     "requirements": {"measurements"},
-    "job": {"choices", "readers/options", "volume"},
+    "job": {"choices", "piece_sizes", "readers/options", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
     "readers": {"arrays", "digits", "errors", "volume", "cell_mesh"} | KERNELS,
@@ -67,10 +68,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     "benches": NOUNS | KERNELS | {"histogram", "methods"},
     "remarks": NOUNS | {"field_facts", "histogram", "isovalue", "measurements"},
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
-    "outputs": NOUNS | {"report/sections", "whole_file", "writers"},
+    "outputs": NOUNS | {"ambiguities", "report/sections", "whole_file", "writers"},
+    "pieces": NOUNS | KERNELS,
     "rounded_error": NOUNS | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
-    "api": NOUNS | FIELD_ROOMS | {"backends"},
+    "api": NOUNS | FIELD_ROOMS | {"backends", "pieces"},
     "many": NOUNS | {"api", "backends", "batches", "memory", "readers/options", "report"},
     "exchange": {"errors"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},

@@ -15,6 +15,7 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_grid_thinning(module);
     isocore::python::bind_rivals(module);
     isocore::python::bind_joining(module);
+    isocore::python::bind_pieces(module);
     isocore::python::bind_labels(module);
     isocore::python::bind_simplification(module);
 }

@@ -23,7 +23,7 @@ KEYS = (
     "kind", "shape", "dtype", "spacing", "space", "unit", "volume", "step", "time", "field", "connectivity", "range",
     "nonfinite", "ignored", "histogram", "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen",
     "options", "surface", "reference", "ratio", "simplification", "error", "search", "ambiguous", "climbing", "label",
-    "facts", "seconds", "peak_rss_bytes",
+    "pieces", "facts", "seconds", "peak_rss_bytes",
 )
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Given:
-    """What was asked of backend and writer; max_error, offset: as they were written. normals: whether they are."""
+    """What was asked of backend and writer; max_error, min_piece, offset: as written. normals: whether they are."""
 
     threads: int
     cap: bool
@@ -22,6 +22,9 @@ class Given:
     topology: str | None = None
     smooth: int | None = None
     background: int | None = None
+    keep_largest: int | None = None
+    min_piece: str | None = None
+    fill_bubbles: bool | None = None
     format: str
     space: str
     offset: str | None = None

@@ -62,6 +62,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
         (scan, "-i", 50, "-b", "mc", "--topology", "trilinear", "--max-triangles", 3),
         (scan, "-i", 50, "-b", "thinning", "--offset", "auto", "--ignore", 0),
         (masks, "--labels", 1, "--smooth", 2, "--background", 0),
+        (masks, "--keep-largest", 1, "--min-piece", 2, "--fill-bubbles"),
         (mesh, "-i", 0.1, "-b", "mc"),
         (mesh, "-i", 0.1, "-b", "thinning"),
         (scan, "-i", 1e9, "-b", "mc", "--if-changed"),

@@ -18,6 +18,7 @@ void bind_grid_thinning(nanobind::module_& module);
 void bind_rivals(nanobind::module_& module);
 void bind_ambiguities(nanobind::module_& module);
 void bind_joining(nanobind::module_& module);
+void bind_pieces(nanobind::module_& module);
 void bind_labels(nanobind::module_& module);
 void bind_simplification(nanobind::module_& module);
 

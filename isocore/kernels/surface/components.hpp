@@ -34,10 +34,7 @@ class Components {
         return true;
     }
 
-  private:
-    std::int32_t& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
-
-    // Path splitting: every step shortens the path of later searches.
+    // The earliest vertex of its component. Path splitting: every step shortens the path of later searches.
     std::int32_t root_of(std::int32_t v) {
         std::int32_t parent = at(v);
         while (parent != v) {
@@ -48,6 +45,9 @@ class Components {
         }
         return v;
     }
+
+  private:
+    std::int32_t& at(std::int32_t v) { return parent_[static_cast<std::size_t>(v)]; }
 
     Array<std::int32_t> parent_;
 };
