@@ -24,6 +24,7 @@ METHODS = {
     "mc --cap": ("mc", Options(cap=True)),
     "mc --topology trilinear": ("mc", Options(topology="trilinear")),
     "asc": ("asc", Options()),
+    "asc --no-simplify": ("asc", Options(simplify=False)),
     "asc --max-error none": ("asc", Options(max_error="none")),
 }
 #: Shares of the samples below an isovalue.
