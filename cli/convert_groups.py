@@ -187,7 +187,8 @@ REPORT = (
     _report(
         "--self-intersections/--no-self-intersections",
         default=True,
-        help="Count the pairs of triangles that meet each other; default on.",
+        show_default=True,
+        help="Count the pairs of triangles that meet each other.",
     ),
     _report(
         "--require",
