@@ -132,7 +132,10 @@ def _affine(path: str, image: Image, cells: bool) -> npt.NDArray[np.float64]:
     if len(numbers) != 15 or not all(map(isfinite, numbers)) or 0 in image.spacing:
         raise InputError(f"{path}: its origin, spacing or direction makes no sense; write it again")
     affine = np.eye(4)
-    affine[:3, :3] = np.reshape(image.direction, (3, 3)) * image.spacing
-    first = np.array(image.extent[::2]) + (0.5 if cells else 0.0)
-    affine[:3, 3] = np.array(image.origin) + affine[:3, :3] @ first
+    with np.errstate(over="ignore", invalid="ignore"):
+        affine[:3, :3] = np.reshape(image.direction, (3, 3)) * image.spacing
+        first = np.array(image.extent[::2]) + (0.5 if cells else 0.0)
+        affine[:3, 3] = np.array(image.origin) + affine[:3, :3] @ first
+    if not np.isfinite(affine).all():
+        raise InputError(f"{path}: its origin, spacing or direction is too large; write it again")
     return affine

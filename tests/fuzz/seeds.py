@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 
 import curved_cells
+import legacy_files
 import numpy as np
 import vtu_files
 from fuzz.mutations import (
@@ -308,6 +309,33 @@ def pieces() -> Iterator[Seed]:
         yield Seed({"n.pvtu": header.encode(), "n0.vtu": part, "n1.vtu": part}, {"n.pvtu": damage, "n1.vtu": damage})
 
 
+def legacy() -> Iterator[Seed]:
+    """Legacy VTK files of both listings of cells, as text and in bytes, and structured points."""
+    with tempfile.TemporaryDirectory() as folder:
+        for mesh in _meshes():
+            for version, mode in legacy_files.WAYS:
+                content = legacy_files.write_grid(Path(folder) / "o.vtk", mesh, version, mode).read_bytes()
+                damage = some(damaged_text, damaged_numbers, damaged_bytes)
+                yield Seed({"o.vtk": content}, {"o.vtk": damage})
+    for mode in ("ASCII", "BINARY"):
+        for kind in ("STRUCTURED_POINTS", "STRUCTURED_GRID", "RECTILINEAR_GRID"):
+            fields = {"p": np.arange(36.0), "v": np.arange(72.0).reshape(36, 2)}
+            grid = legacy_files.structured(kind, mode, (4, 3, 3), fields, {"c": np.arange(12, dtype="i4")})
+            yield Seed({"o.vtk": grid}, {"o.vtk": some(damaged_text, damaged_numbers, damaged_bytes)})
+
+
+def series() -> Iterator[Seed]:
+    """Steps of a series, listed in both ways, and parts of one step."""
+    parts = {f"q{n}.vtu": _vtu(mesh, vtu_files.Encoding()) for n, mesh in enumerate(_meshes()[:2])}
+    sets = "".join(f'<DataSet timestep="{n // 2}" part="{n % 2}" file="q{n % 2}.vtu"/>\n' for n in range(2))
+    pvd = f'<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n<Collection>{sets}</Collection></VTKFile>'
+    damage = some(damaged_xml, damaged_numbers, damaged_text)
+    yield Seed({"q.pvd": pvd.encode(), **parts}, {"q.pvd": damage, "q0.vtu": damage})
+    listed = {"file-series-version": "1.0", "files": [{"name": "q0.vtu", "time": 0.5}]}
+    files = {"q.vtu.series": json.dumps(listed).encode(), "q0.vtu": parts["q0.vtu"]}
+    yield Seed(files, {"q.vtu.series": some(damaged_json), "q0.vtu": damage})
+
+
 @cache
 def seeds_of(reader: str) -> tuple[Seed, ...]:
     """All seeds of one reader."""
@@ -316,5 +344,6 @@ def seeds_of(reader: str) -> tuple[Seed, ...]:
 
 READERS = {
     "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "raw": raw, "gzip": packed, "vtu": vtu,
-    "cells": cells, "vti": images, "pvtu": pieces,
+    "cells": cells, "vti": images, "pvtu": pieces, "vtk": legacy,
+    "pvd": series,
 }  # fmt: skip
