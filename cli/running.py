@@ -122,12 +122,17 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
 
 def _write_depfile(jobs: list[Job], path: Path | None) -> list[str]:
     """Write the rules; what is in the way, if anything is."""
-    if path is not None:
-        try:
-            with whole_file(path) as stream:
-                stream.write(os.fsencode(depfile_text(jobs)))
-        except IsocoreError as error:
-            return [str(error)]
+    if path is None:
+        return []
+    text, left_out = depfile_text(jobs)
+    try:
+        with whole_file(path) as stream:
+            stream.write(os.fsencode(text))
+    except IsocoreError as error:
+        return [str(error)]
+    if left_out:
+        more = f" and {len(left_out) - 1} more" if len(left_out) > 1 else ""
+        say(f"isocore: warning: {path}: leaves out {left_out[0]}{more}, since make cannot write such a name; rename it")
     return []
 
 

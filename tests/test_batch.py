@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -216,3 +217,37 @@ def test_a_depfile_names_every_file_of_an_input(tmp_path: Path) -> None:
     assert result.returncode == 0
     rule = depfile.read_text().splitlines()[0]
     assert rule == f"{tmp_path}/x.ply: {tmp_path}/head.nhdr {tmp_path}/two\\ words.raw"
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+@pytest.mark.parametrize(
+    "stem",
+    ["a b", "a#b", "a$b", "a$(b)", "a:b", "a*b", "a?b", "a[b]", "~root", "a\\b", "a\\ b", "a&b", "'a'", 'a"b', "a,{b}"],
+)
+def test_make_finds_a_file_by_its_rule(tmp_path: Path, stem: str) -> None:
+    """It makes the output again when the input is newer, and only then; a file like it does not count."""
+    write_nifti(tmp_path / f"{stem}.nii", ball())
+    command = [*PROGRAM, "convert", f"{stem}.nii", "-d", "out", *FAST, "--depfile", "deps"]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=60, check=False)
+    assert (made.returncode, made.stderr) == (0, b"")
+    rule = (tmp_path / "deps").read_text().splitlines()[0]
+    (tmp_path / "Makefile").write_text(f"{rule}\n\t@echo again\n")
+    (tmp_path / "ab.nii").touch()
+    for age, said in ((100, b"again\n"), (-100, b"")):
+        source, output = tmp_path / f"{stem}.nii", tmp_path / "out" / f"{stem}.ply"
+        os.utime(source, (output.stat().st_mtime + age,) * 2)
+        words = ["make", "-rRs", "-f", "Makefile"]
+        ran = subprocess.run(words, cwd=tmp_path, capture_output=True, timeout=60, check=False)
+        assert (ran.returncode, ran.stdout if b"again" in ran.stdout else b"") == (0, said), ran.stderr
+
+
+@pytest.mark.parametrize("stem", ["a;touch gone", "a\nall:\n\ttouch gone\n", "a=b", "a|b", "a%b", "a\tb"])
+def test_no_name_becomes_a_command_of_make(tmp_path: Path, stem: str) -> None:
+    """What make cannot write is left out, with a warning; the rest is there."""
+    for name in (stem, "good"):
+        write_nifti(tmp_path / f"{name}.nii", ball())
+    command = [*PROGRAM, "convert", f"{stem}.nii", "good.nii", "-d", "out", *FAST, "--depfile", "deps"]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
+    assert made.returncode == 0 and made.stderr.count("\n") == 1
+    assert "since make cannot write such a name" in made.stderr
+    assert (tmp_path / "deps").read_text() == "out/good.ply: good.nii\ngood.nii:\n"
