@@ -117,6 +117,7 @@ _READING_OPTIONS = (
     _input(
         "--ignore",
         type=Ignored(),
+        show_default="none",
         metavar="VALUE",
         multiple=True,
         help="A value that means that nothing is there: outside, as NaN is; may be repeated.",
