@@ -48,6 +48,7 @@ LABELS = (
         "--labels",
         type=LabelList(),
         metavar="all|LIST",
+        show_default="none: isovalues",
         help="Of a label map: one surface for each label (all), or for some, as 1,5-9. Neighbours share their border.",
     ),
     _isovalue(
@@ -111,6 +112,7 @@ OUTPUT = (
         "colour",
         type=Colour(),
         metavar="'#rrggbb'",
+        show_default="none",
         help="Of the surface, in ply, obj (with a .mtl beside) and glb. Labels have their own.",
     ),
     _output(
