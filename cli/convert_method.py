@@ -31,6 +31,7 @@ METHOD = (
     ),
     _method(
         "--simplify/--no-simplify",
+        show_default="no-simplify",
         default=None,
         help="Fewest triangles within --max-error, both ways; no self-intersections.",
     ),
