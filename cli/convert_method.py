@@ -39,6 +39,7 @@ METHOD = (
         "--triangles",
         type=click.IntRange(min=1),
         metavar="N",
+        show_default="as few as the bound allows",
         help="Simplify to at most N triangles, past 0.5 voxels if need be; a given --max-error holds.",
     ),
     _method(
