@@ -38,8 +38,9 @@ def label_count(field: Field, spread: Histogram) -> int:
     if not spread.finite or is_two_valued(spread) or spread.minimum == spread.maximum:
         return 0
     rows = _rows(field.samples)
-    if rows.dtype.kind == "f" and not ((rows == np.floor(rows)) | np.isnan(rows)).all():
-        return 0
+    with np.errstate(invalid="ignore"):  # of signalling NaN
+        if rows.dtype.kind == "f" and not ((rows == np.floor(rows)) | np.isnan(rows)).all():
+            return 0
     if spread.exact and not spread.apart:
         values, background = int(np.count_nonzero(spread.counts)), spread.low + int(np.argmax(spread.counts))
     else:
@@ -76,7 +77,8 @@ def _neighbours(rows: npt.NDArray[np.generic], axis: int, background: float) -> 
     pairs, differing = int(np.count_nonzero(inside)), int(np.count_nonzero(differ))
     if not pairs:
         return 0, 1.0, 0.0
-    steps = np.abs(first[differ].astype(np.float64) - second[differ].astype(np.float64))
+    with np.errstate(invalid="ignore"):
+        steps = np.abs(first[differ].astype(np.float64) - second[differ].astype(np.float64))
     return pairs, 1 - differing / pairs, float(np.mean(steps > 1)) if differing else 1.0
 
 

@@ -123,8 +123,9 @@ class Volume:
             raise FieldError("the affine must be a finite 4x4 matrix")
         if np.abs(affine).max() > FARTHEST:
             raise FieldError(f"the affine is too large to reckon with: places lie beyond {FARTHEST:g}")
-        voxel = abs(np.linalg.det(affine[:3, :3]))
-        if voxel < 1e-30:
+        with np.errstate(all="ignore"):  # of numbers so small that they are none
+            voxel = abs(np.linalg.det(affine[:3, :3]))
+        if not voxel >= 1e-30:
             raise FieldError("the affine is singular: an axis has no length or two axes coincide")
         affine.flags.writeable = False
         samples.flags.writeable = False

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from isocore.errors import InputError, IsocoreError, about, reading
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
@@ -15,11 +16,16 @@ from isocore.readers.ignored import without_ignored
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
 from isocore.readers.pointers import absence, pointer
-from isocore.readers.strangers import what_it_is
+from isocore.readers.strangers import readable_as, what_it_is
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
     from isocore.readers.vtk_fields import FieldInfo
+
+
+T = TypeVar("T")
+#: Of files without a header the content cannot tell what they are.
+_BARE = (".raw", ".raw.gz")
 
 
 def suffix_of(path: os.PathLike[str] | str) -> str | None:
@@ -29,29 +35,34 @@ def suffix_of(path: os.PathLike[str] | str) -> str | None:
 
 
 def read(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> Field:
-    """The field in `path`. Every refusal is an IsocoreError whose message starts with the path."""
+    """The field in `path`. Every refusal is an IsocoreError whose message starts with the path.
+
+    Where the suffix is not known or wrong, the content decides, and a warning says so.
+    """
     options = options or ReadOptions()
     with _named(path):
-        field = _format(path).read(Path(path), options)
+        field, remark = _used(Path(path), lambda form: form.read(Path(path), options))
+        if remark:
+            field = replace(field, warnings=(remark, *field.warnings))
         return without_ignored(field, options.ignore) if options.ignore and isinstance(field, Volume) else field
 
 
 def count_volumes(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> int:
     """How many volumes `path` holds, by its header; 1 for a mesh."""
     with _named(path):
-        return _format(path).count(Path(path), options or ReadOptions())
+        return _used(Path(path), lambda form: form.count(Path(path), options or ReadOptions()))[0]
 
 
 def offered_fields(path: os.PathLike[str] | str) -> tuple[FieldInfo, ...]:
     """What a mesh offers to contour, fields of points before those of cells; () for a volume."""
     with _named(path):
-        return _format(path).fields(Path(path))
+        return _used(Path(path), lambda form: form.fields(Path(path)))[0]
 
 
 def times_of(path: os.PathLike[str] | str) -> tuple[float, ...]:
     """The times of a series' steps, ascending; () for a file that is none."""
     with _named(path):
-        return _format(path).times(Path(path))
+        return _used(Path(path), lambda form: form.times(Path(path)))[0]
 
 
 def files_of(path: Path, step: int | None = None) -> tuple[Path, ...]:
@@ -61,10 +72,12 @@ def files_of(path: Path, step: int | None = None) -> tuple[Path, ...]:
     """
     suffix = suffix_of(path)
     try:
-        odd = path.exists() and not path.is_file()  # a pipe would be waited for
-        if odd or suffix is None:
+        if path.exists() and not path.is_file():  # a pipe would be waited for
             return (path,)
-        form = BY_SUFFIX[suffix]
+        found = (BY_SUFFIX[suffix], "") if suffix else readable_as(path, BY_SUFFIX)
+        if found is None:
+            return (path,)
+        form = found[0]
         if step is not None and form.step_files is not None:
             return (path, *form.step_files(path, step))
         return (path, *form.files(path))
@@ -88,21 +101,35 @@ def content_bytes(path: Path, step: int | None = None) -> int:
     return sum(unpacked_bytes(file) for file in files_of(path, step))
 
 
-def _format(path: os.PathLike[str] | str) -> Format:
-    if Path(path).is_dir():
-        raise InputError("is a folder, not a file; name the file inside it")
-    if not Path(path).exists():
-        raise InputError(absence(Path(path)))
-    found = Path(path).stat()
-    if not stat.S_ISREG(found.st_mode):
-        raise InputError("is a pipe or a device, not a file; write what it holds to a file first")
+def _used(path: Path, use: Callable[[Format], T]) -> tuple[T, str]:
+    """What the format of `path` makes of it, and a remark where its content named the format and not its suffix."""
+    _check_file(path)
     suffix = suffix_of(path)
     if suffix is None:
-        known = f"has no suffix known here; known are {', '.join(SEARCHED)}"
-        raise InputError(what_it_is(Path(path), BY_SUFFIX, None) or known)
-    if not found.st_size:
+        found = readable_as(path, BY_SUFFIX)
+        if found is None:
+            known = f"has no suffix known here; known are {', '.join(SEARCHED)}"
+            raise InputError(what_it_is(path, BY_SUFFIX, None) or known)
+        return use(found[0]), f"has no suffix known here; its content is {found[1]}, and was read as that"
+    try:
+        return use(BY_SUFFIX[suffix]), ""
+    except InputError:
+        found = None if suffix in _BARE else readable_as(path, BY_SUFFIX, BY_SUFFIX[suffix])
+        if found is None:
+            raise
+    return use(found[0]), f"ends in {suffix}, but its content is {found[1]}, and was read as that"
+
+
+def _check_file(path: Path) -> None:
+    if path.is_dir():
+        raise InputError("is a folder, not a file; name the file inside it")
+    if not path.exists():
+        raise InputError(absence(path))
+    found = path.stat()
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError("is a pipe or a device, not a file; write what it holds to a file first")
+    if not found.st_size and suffix_of(path) is not None:
         raise InputError("is empty; copy it again")
-    return BY_SUFFIX[suffix]
 
 
 @contextmanager
@@ -123,7 +150,7 @@ def _named(path: os.PathLike[str] | str) -> Iterator[None]:
 def _stranger(path: Path, error: IsocoreError) -> str | None:
     """What was tried to be read, where it is something else than its suffix says, or what belongs to it is."""
     suffix = suffix_of(path)
-    bare = suffix in (".raw", ".raw.gz")
+    bare = suffix in _BARE
     if suffix is None or not path.is_file() or not (isinstance(error, InputError) or bare):
         return None
     if found := what_it_is(path, BY_SUFFIX, BY_SUFFIX[suffix], bare=bare):

@@ -80,6 +80,13 @@ FORMATS = (
         unsearched=(".img", ".img.gz"),
     ),
     Format(suffixes=(".nrrd", ".nhdr"), read=read_nrrd, count=count_nrrd, files=nrrd_files),
+    Format(
+        suffixes=(".mha", ".mhd"),
+        read=_late("metaimage", "read_metaimage"),
+        count=_late("metaimage", "count_metaimage"),
+        files=_late("metaimage", "metaimage_files"),
+    ),
+    Format(suffixes=(".mgz", ".mgh"), read=_late("mgh", "read_mgh"), count=_late("mgh", "count_mgh")),
     Format(suffixes=(".raw", ".raw.gz"), read=read_raw, count=count_raw, files=raw_files),
     Format(suffixes=(".vtu",), read=_late("vtu", "read_vtu"), fields=_late("vtu", "vtu_fields")),
     Format(

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any, Literal, cast
 
-Packing = Literal["none", "gzip", "bzip2"]
+Packing = Literal["none", "gzip", "zlib", "bzip2"]
 
 MAGIC = b"\x1f\x8b"
 _PACKED, _UNPACKED = 1 << 14, 1 << 18  # bytes at a time
@@ -31,6 +31,8 @@ def content(file: IO[bytes], packing: Packing) -> Iterator[bytes]:
             except (zlib.error, OSError):
                 return
             packed = unpacker.unused_data
+            if unpacker.eof and packing == "zlib":
+                return
             if unpacker.eof:
                 unpacker = _unpacker(packing)
 
@@ -73,6 +75,8 @@ def unpacking(file: IO[bytes], packing: Packing) -> Any:
         except ImportError:
             import gzip as inflater  # type: ignore[no-redef]
         return inflater.GzipFile(fileobj=file, mode="rb")  # type: ignore[no-untyped-call]
+    if packing == "zlib":
+        return Inflated(file)
     return bz2.BZ2File(file) if packing == "bzip2" else file
 
 
@@ -83,6 +87,37 @@ def inflater_error() -> type[Exception]:
     except ImportError:
         return zlib.error
     return cast(type[Exception], error)
+
+
+def _zlib() -> Any:
+    try:
+        from isal import isal_zlib
+    except ImportError:
+        return zlib
+    return isal_zlib
+
+
+class Inflated(io.RawIOBase):
+    """The content of a zlib stream that begins where `file` stands; what lies behind it is not looked at."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+        self._inflater: Any = _zlib().decompressobj()
+
+    def readable(self) -> bool:
+        """It is."""
+        return True
+
+    def readinto(self, target: Any) -> int:
+        """Fill `target` with what comes next, as far as one call gives it; how much it was."""
+        while not self._inflater.eof:
+            packed = self._inflater.unconsumed_tail or self._file.read(_PACKED)
+            if got := self._inflater.decompress(packed, len(target)):  # also of what it took in before
+                target[: len(got)] = got
+                return len(got)
+            if not packed:
+                raise EOFError
+        return 0
 
 
 class Bounded(io.RawIOBase):
@@ -104,13 +139,15 @@ class Bounded(io.RawIOBase):
 
 
 def _unpacker(packing: Packing) -> Any:
-    return zlib.decompressobj(wbits=31) if packing == "gzip" else bz2.BZ2Decompressor()
+    if packing == "bzip2":
+        return bz2.BZ2Decompressor()
+    return zlib.decompressobj(wbits=31 if packing == "gzip" else 15)
 
 
 def _pieces(unpacker: Any, packed: bytes, packing: Packing) -> Iterator[bytes]:
     """What `packed` unpacks to, as far as the member goes."""
     yield unpacker.decompress(packed, _UNPACKED)
-    if packing == "gzip":
+    if packing != "bzip2":
         while unpacker.unconsumed_tail and not unpacker.eof:
             yield unpacker.decompress(unpacker.unconsumed_tail, _UNPACKED)
     else:

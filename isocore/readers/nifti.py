@@ -115,11 +115,11 @@ def _layout(header: Any) -> Layout:
 
 
 def _pair(path: Path) -> tuple[Path, Path | None]:
-    """Header and image file: the same one for .nii (image None), two for .hdr and .img."""
+    """Header and image file: two for .hdr and .img, else the same one (image None)."""
     suffix = ".gz" if path.name.lower().endswith(".gz") else ""
     bare = path.name[: -len(suffix)] if suffix else path.name
     stem, kind = bare[:-4], bare[-4:]
-    if kind.lower() == ".nii":
+    if kind.lower() not in (".hdr", ".img"):
         return path, None
     partner = {".hdr": ".img", ".img": ".hdr", ".HDR": ".IMG", ".IMG": ".HDR"}.get(kind, ".img")
     beside = [path.with_name(stem + partner + end) for end in (suffix, ".gz", "")]

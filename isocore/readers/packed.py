@@ -1,4 +1,4 @@
-"""The bytes of a file, plain, gzip or bzip2, read once and straight to where they belong.
+"""The bytes of a file, plain, gzip, zlib or bzip2, read once and straight to where they belong.
 
 gzip is inflated by isal where there is a wheel of it (about 2.5 times zlib), else by zlib; both know files of
 several members and check every checksum they pass. Messages carry no path: `isocore.readers.read` adds it.
@@ -24,7 +24,7 @@ Got = TypeVar("Got")
 _CHUNK = 1 << 18
 #: No deflate stream inflates to more than this many times its size, no bzip2 block of 900,000 bytes that run-length
 #: coding made of 255 times as many is shorter than thirty; a scan usually inflates to four times its size.
-_LIMITS = {"gzip": 1032, "bzip2": 1_600_000}
+_LIMITS = {"gzip": 1032, "zlib": 1032, "bzip2": 1_600_000}
 _USUAL_RATIO = 4
 #: Surplus content is counted so far: it may be endless, and a warning says that there is too much all the same.
 _MOST_SURPLUS = 1 << 26

@@ -1,7 +1,7 @@
 """What a file is that cannot be read as what its name says: a pointer instead of data, a web page, another format.
 
 Asked only once reading has failed, or where a suffix is not known: what can be read is never turned away by a guess.
-To read one of these formats, give it a row in formats.py; its row here then only says how to name the file.
+To read one of these formats, give it a row in formats.py; by its row here it is then known under any name.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 from isocore.readers.pointers import first_bytes, pointer
 
@@ -26,9 +27,10 @@ class Stranger:
     suffixes: tuple[str, ...] = ()
     test: Callable[[bytes], object] = lambda head: False
 
-    def sentence(self, own: str | None) -> str:
-        """What it is and what to do; own: the suffix that such a file is read under, if it is."""
-        return f"is {self.what}; {f'rename it to end in {own}' if own else self.advice}"
+    @property
+    def sentence(self) -> str:
+        """What it is and what to do."""
+        return f"is {self.what}; {self.advice}"
 
 
 def _starts(*magics: bytes) -> Callable[[bytes], object]:
@@ -63,10 +65,7 @@ STRANGERS = (
     ),
     Stranger("a NIfTI file", "", (".nii",), lambda head: head[344:347] == b"n+1" or head[4:7] == b"n+2"),
     Stranger("a NRRD file", "", (".nrrd",), _matches(rb"NRRD000\d")),
-    Stranger(
-        "a MetaImage header", "write it as NRRD or NIfTI, or give its data file as .raw with --shape and --dtype",
-        (".mhd", ".mha"), _matches(rb"(ObjectType|NDims|Comment)\s*="),
-    ),
+    Stranger("a MetaImage", "", (".mha", ".mhd"), _matches(rb"(ObjectType|NDims|Comment)\s*=")),
     Stranger("a VTK image (ImageData)", "", (".vti",), _vtk(rb"ImageData")),
     Stranger("a list of the pieces of a VTK image", "", (".pvti",), _vtk(rb"PImageData")),
     Stranger("a list of the pieces of a VTK mesh", "", (".pvtu",),
@@ -90,8 +89,8 @@ STRANGERS = (
         (".nc", ".cdf", ".e", ".exo", ".ex2"), _starts(b"CDF\x01", b"CDF\x02", b"CDF\x05"),
     ),
     Stranger(
-        "a FreeSurfer volume", "convert it to NIfTI: mri_convert IN.mgz OUT.nii.gz", (".mgz", ".mgh"),
-        lambda head: head[:4] == b"\0\0\0\1" and head[20:24] in (bytes((0, 0, 0, n)) for n in (0, 1, 3, 4)),
+        "a FreeSurfer volume", "", (".mgz", ".mgh"),
+        lambda head: head[:4] == b"\0\0\0\1" and head[20:24] in (bytes((0, 0, 0, n)) for n in (0, 1, 3, 4, 10)),
     ),
     Stranger("an AFNI volume", "convert it to NIfTI, with 3dAFNItoNIFTI for example", (".brik", ".brik.gz", ".head")),
     Stranger("an Amira file", "export it as NRRD, or as .vtu if it is a mesh", (".am",),
@@ -138,8 +137,24 @@ STRANGERS = (
 _WORDS = STRANGERS[:2]
 
 
+Row = TypeVar("Row")
+
+
+def readable_as(path: Path, rows: Mapping[str, Row], row: Row | None = None) -> tuple[Row, str] | None:
+    """By its content, the format that the file `path` can be read as, and what that is called; None where no other.
+
+    rows: the format of each suffix that is read; row: the one that `path` was read as, if any.
+    """
+    head = first_bytes(path)
+    for stranger in STRANGERS:
+        own = next((rows[suffix] for suffix in stranger.suffixes if suffix in rows), None)
+        if stranger.test(head):
+            return None if own is None or own is row else (own, stranger.what)
+    return None
+
+
 def what_it_is(path: Path, rows: Mapping[str, object], row: object, *, bare: bool = False) -> str | None:
-    """What the file `path` is and what to do about it; None where nothing is known.
+    """What the file `path` is and what to do about it; None where nothing is known, or where it can be read.
 
     rows: the format of each suffix that is read; row: the one that `path` was read as, if any. bare: it has no header.
     """
@@ -147,13 +162,13 @@ def what_it_is(path: Path, rows: Mapping[str, object], row: object, *, bare: boo
     if found := pointer(path):
         return found
     for stranger in _WORDS if bare else STRANGERS:
-        own = next((suffix for suffix in stranger.suffixes if suffix in rows), None)
-        if stranger.test(head) and (own is None or rows[own] is not row):
-            return stranger.sentence(own)
-    return None if row is not None else _by_name(path)
+        if stranger.test(head) and not any(suffix in rows for suffix in stranger.suffixes):
+            return stranger.sentence
+    return None if row is not None else _by_name(path, rows)
 
 
-def _by_name(path: Path) -> str | None:
+def _by_name(path: Path, rows: Mapping[str, object]) -> str | None:
     name = path.name.lower()
-    named = [(suffix, stranger) for stranger in STRANGERS for suffix in stranger.suffixes if name.endswith(suffix)]
-    return max(named, key=lambda one: len(one[0]))[1].sentence(None) if named else None
+    unread = ((suffix, one) for one in STRANGERS for suffix in one.suffixes if suffix not in rows)
+    named = [(suffix, one) for suffix, one in unread if name.endswith(suffix)]
+    return max(named, key=lambda one: len(one[0]))[1].sentence if named else None

@@ -10,6 +10,7 @@ import gzip
 import json
 import struct
 import tempfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -154,6 +155,41 @@ def nhdr() -> Iterator[Seed]:
             files |= {name: packed(content) for name, content in zip(names, contents, strict=True)}
             data = within("gzip", damaged_bytes) if encoding == "gzip" else damaged_bytes
             yield Seed(files, {"e.nhdr": some(damaged_text, damaged_text, damaged_bytes), names[-1]: data})
+
+
+_METAIMAGE = (
+    "ObjectType = Image\nNDims = 3\nBinaryData = {binary}\nBinaryDataByteOrderMSB = False\nCompressedData = {packed}\n"
+    "TransformMatrix = 0 1 0 1 0 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 1 2 3\nHeaderSize = 0\nDimSize = 4 5 6\n"
+    "ElementNumberOfChannels = 1\nElementType = MET_SHORT\nElementDataFile = {place}\n"
+)
+
+
+def metaimage() -> Iterator[Seed]:
+    """Samples behind the header, plain, packed and as text; beside it in one file, in a list, in numbered ones."""
+    samples = ramp((4, 5, 6))
+    plain, slices = samples.tobytes(order="F"), [samples[:, :, k].tobytes(order="F") for k in range(6)]
+    for binary, pack in ((True, bytes), (True, zlib.compress), (True, gzip.compress), (False, bytes)):
+        text = _METAIMAGE.format(binary=binary, packed=pack is not bytes, place="LOCAL").encode()
+        content = pack(plain) if binary else _encoded(samples, "ascii")
+        yield Seed({"h.mha": text + content}, {"h.mha": some(_of_head(text), damaged_bytes)})
+    listed = [f"s{k}.raw" for k in range(6)]
+    for place, names in (("h.raw", ["h.raw"]), ("LIST\n" + "\n".join(listed), listed), ("s%d.raw 0 5 1", listed)):
+        files = {"h.mhd": _METAIMAGE.format(binary=True, packed=False, place=place).encode()}
+        files |= dict(zip(names, slices if len(names) == 6 else [plain], strict=True))
+        yield Seed(files, {"h.mhd": some(damaged_text, damaged_text, damaged_bytes), names[-1]: damaged_bytes})
+
+
+#: Offset and kind of the numbers in a header of FreeSurfer's.
+MGH = [*_span("i", 0, 7), *_span("h", 28), *_span("f", 30, 15)]
+
+
+def mgh() -> Iterator[Seed]:
+    """One frame and several, packed and not."""
+    for shape, dtype in (((4, 5, 6), "i2"), ((3, 4, 5), "f4"), ((3, 3, 3, 2), "u1"), ((2, 3, 4), "i4")):
+        files = _written("i.mgh", ramp(shape, dtype))
+        header = some(of_fields(MGH, ">"), damaged_bytes)
+        yield Seed(files, {"i.mgh": header})
+        yield Seed({"i.mgz": gzip.compress(files["i.mgh"], 1, mtime=0)}, {"i.mgz": within("gzip", header)})
 
 
 def raw() -> Iterator[Seed]:
@@ -343,7 +379,7 @@ def seeds_of(reader: str) -> tuple[Seed, ...]:
 
 
 READERS = {
-    "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "raw": raw, "gzip": packed, "vtu": vtu,
-    "cells": cells, "vti": images, "pvtu": pieces, "vtk": legacy,
+    "nifti": nifti, "analyze": analyze, "nrrd": nrrd, "nhdr": nhdr, "metaimage": metaimage, "mgh": mgh,
+    "raw": raw, "gzip": packed, "vtu": vtu, "cells": cells, "vti": images, "pvtu": pieces, "vtk": legacy,
     "pvd": series,
 }  # fmt: skip

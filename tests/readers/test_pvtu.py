@@ -126,7 +126,7 @@ def test_fields_that_not_all_pieces_hold_are_left_out_with_a_warning(tmp_path):
     "text, message",
     [
         ('<VTKFile type="PTable"><Piece Source="a"/></VTKFile>', "holds a VTK PTable; a .pvtu lists the pieces"),
-        ('<VTKFile type="UnstructuredGrid"/>', "is an unstructured grid of VTK; rename it to end in .vtu"),
+        ('<VTKFile type="UnstructuredGrid"/>', "holds no cells, so there is nothing to contour"),
         ("<html/>", "starts with <html>"),
         ('<VTKFile type="PUnstructuredGrid"/>', "names no pieces"),
         ('<VTKFile type="PUnstructuredGrid"><Piece/></VTKFile>', "names the file '', which no file is called"),

@@ -14,12 +14,12 @@ import pytest
 from scans import REAL_DATA
 
 from isocore.errors import FieldError, InputError, IsocoreError, OptionError
-from isocore.readers import SEARCHED, ReadOptions, count_volumes, read, suffix_of
+from isocore.readers import ReadOptions, count_volumes, read, suffix_of
 from isocore.volume import Volume
 
 pytestmark = pytest.mark.skipif(not REAL_DATA.is_dir(), reason=f"no real data at {REAL_DATA}")
 
-WITH_HEADER = tuple(suffix for suffix in SEARCHED if suffix not in (".raw", ".raw.gz", ".vtu"))
+WITH_HEADER = (".nii", ".nii.gz", ".hdr", ".hdr.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".mgz", ".mgh")
 FOUND = [path.relative_to(REAL_DATA) for path in REAL_DATA.rglob("*") if suffix_of(path) in WITH_HEADER]
 SCANS = sorted(path.as_posix() for path in FOUND)
 
@@ -89,6 +89,7 @@ SEVERAL = {
     "volumes/nibabel/example4d.nii.gz": (2, 3),
     "volumes/nibabel/example_nifti2.nii.gz": (2, 3),
     "volumes/nibabel/functional.nii": (20, 3),
+    "volumes/nibabel/test.mgz": (2, 3),
     "volumes/nifti-reader-js/5D_zeros.nii.gz": (3, 4),
     "volumes/nrrd.jl/io/small_time.nrrd": (5, 3),
     "volumes/nrrd.jl/io/test_helix.nrrd": (7, 0),

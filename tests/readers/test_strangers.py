@@ -16,7 +16,7 @@ from scans import patched, ramp, save
 
 from isocore.batches.inputs import find_inputs
 from isocore.errors import InputError, IsocoreError, OptionError
-from isocore.readers import SEARCHED, ReadOptions, read
+from isocore.readers import SEARCHED, ReadOptions, count_volumes, files_of, read, suffix_of
 from isocore.readers.formats import BY_SUFFIX
 from isocore.readers.strangers import STRANGERS
 from isocore.volume import Volume
@@ -110,7 +110,6 @@ def _npy() -> bytes:
 #: What is written -> what is said of it, under a suffix that promises something else and under none.
 CONTENTS = {
     "is a DICOM file": bytes(128) + b"DICM" + bytes(300),
-    "is a MetaImage header": b"ObjectType = Image\nNDims = 3\n",
     "is a VTK surface (PolyData)": b'<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0">',
     "is a structured grid of VTK": b"<VTKFile version='1.0' type='StructuredGrid'>",
     "is an HDF5 file": b"\x89HDF\r\n\x1a\n" + bytes(400),
@@ -152,14 +151,28 @@ def test_a_suffix_that_is_not_read_is_named_too(tmp_path: Path, stranger: object
             assert refused(path).startswith("is ") and "; " in refused(path)
 
 
-def test_a_known_format_under_another_suffix_is_renamed(tmp_path: Path) -> None:
-    """The message says what to call it."""
+@pytest.mark.parametrize("suffix", [".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".mgz", ".mgh"])
+def test_a_known_format_is_known_by_its_content(tmp_path: Path, suffix: str) -> None:
+    """Under a suffix of another format and under none; a warning says so, and its files are found."""
+    path = save(tmp_path / f"scan{suffix}", ramp())
+    sound = read(path)
+    assert isinstance(sound, Volume)
+    for wrong in ("scan", "scan.dat", "scan.vtu", "scan.nhdr", "scan.nii", "scan.mgz"):
+        if BY_SUFFIX.get(suffix_of(Path(wrong)) or "") is BY_SUFFIX[suffix]:
+            continue
+        path = path.rename(tmp_path / wrong)
+        found = read(path)
+        assert isinstance(found, Volume) and np.array_equal(found.samples, sound.samples), wrong
+        assert np.array_equal(found.affine, sound.affine) and count_volumes(path) == 1
+        assert "its content is a" in found.warnings[0] and found.warnings[0].endswith("was read as that")
+    assert len(files_of(path.rename(tmp_path / "scan.dat"))) == (2 if suffix == ".mhd" else 1)
+
+
+def test_a_known_format_that_is_damaged_too_says_so(tmp_path: Path) -> None:
+    """What is wrong with it, as its own reader has it."""
     path = save(tmp_path / "scan.nii", ramp())
-    for wrong in ("scan.nrrd", "scan.vtu", "scan"):
-        assert refused(path.rename(tmp_path / wrong)) == "is a NIfTI file; rename it to end in .nii"
-        path = tmp_path / wrong
-    path.write_bytes(b"NRRD0004\n")
-    assert refused(path.rename(tmp_path / "scan.nii")) == "is a NRRD file; rename it to end in .nrrd"
+    path.write_bytes(path.read_bytes()[:-3])
+    assert refused(path.rename(tmp_path / "scan.nrrd")).startswith("ends early")
 
 
 def test_a_damaged_file_of_its_own_suffix_is_no_stranger(tmp_path: Path) -> None:

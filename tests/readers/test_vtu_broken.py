@@ -49,7 +49,6 @@ def changed(tmp_path, old: str, new: str, encoding: Encoding = Encoding()) -> st
         (b"# vtk DataFile Version 3.0\nmesh\nASCII\n", "legacy VTK file"),
         (b"<html><body/></html>", "is a web page"),
         (b'<VTKFile type="PolyData"></VTKFile>', "is a VTK surface (PolyData)"),
-        (b'<VTKFile type="PUnstructuredGrid"></VTKFile>', "is a list of the pieces of a VTK mesh"),
         (b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid>', "no element found"),
         (b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid></VTKFile>', "mismatched tag"),
         (b'<VTKFile type="UnstructuredGrid"><Unstruct', "a tag is not closed"),
