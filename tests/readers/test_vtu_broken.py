@@ -46,7 +46,6 @@ def changed(tmp_path, old: str, new: str, encoding: Encoding = Encoding()) -> st
     [
         (b"", "is empty"),
         (b"hello, no tags here", "is not XML"),
-        (b"# vtk DataFile Version 3.0\nmesh\nASCII\n", "legacy VTK file"),
         (b"<html><body/></html>", "is a web page"),
         (b'<VTKFile type="PolyData"></VTKFile>', "is a VTK surface (PolyData)"),
         (b'<VTKFile type="UnstructuredGrid"><UnstructuredGrid>', "no element found"),
