@@ -59,6 +59,7 @@ class PairCounter {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
                 std::uint32_t near = theirs.touched_by(own.at(lane));
                 if (other == group) near &= ~std::uint32_t{0} << lane << 1;
+                if (near == 0) continue;
                 const intersections::Sharing sharing = groups_[other].with(groups_[group], lane);
                 near &= ~sharing.settled;
                 for (; near != 0; near &= near - 1) {
