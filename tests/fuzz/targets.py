@@ -12,7 +12,7 @@ import tempfile
 import warnings
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -87,7 +87,7 @@ def check_line(message: str) -> None:
 
 def _read(path: Path, random: Random) -> None:
     """Every function of the readers, then the field itself; some fields are described and converted too."""
-    options = ReadOptions(volume=0)
+    options = ReadOptions(volume=0, step=random.choice((0, 0, 0, 1, None)))
     files_of(path)
     content_bytes(path)
     _attempt(path, lambda: count_volumes(path, options))
@@ -96,7 +96,7 @@ def _read(path: Path, random: Random) -> None:
     if fields:
         field = random.choice(fields)
         component = random.choice(("0", "magnitude")) if field.components > 1 else None
-        options = ReadOptions(volume=0, field=field.name, component=component)
+        options = replace(options, field=field.name, component=component)
     found = []
     _attempt(path, lambda: found.append(read(path, options)))
     for field in found:

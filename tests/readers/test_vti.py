@@ -209,3 +209,11 @@ def test_the_surface_of_an_image_is_that_of_its_samples(tmp_path):
     path = write_vti(tmp_path / "a.vti", "0 11 0 11 0 11", [part], 'Spacing="2 2 2"')
     measured = measure(extract(read(path), 4.0, backend="mc"))
     assert measured.watertight and abs(measured.bounds[0][0] - 3) < 0.2
+
+
+def test_a_spacing_beyond_all_reckoning_is_refused(tmp_path):
+    """In the volume's words, and without a warning of Python's."""
+    turned = " ".join(["1e300"] * 9)
+    path = image(tmp_path, {"u": ramp().ravel()}, place=f'Spacing="1e300 1 1" Direction="{turned}"')
+    with pytest.raises(IsocoreError, match=r"a\.vti: its origin, spacing or direction is too large"):
+        read(path)
