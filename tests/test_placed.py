@@ -76,6 +76,14 @@ def test_fresh_arrays_are_placed_where_they_lie():
     assert measure(placed).volume == 1
 
 
+@pytest.mark.parametrize("steps", [(5e-324, 1e100, 1.0), (1e-310, 0.5, 2.0), (0.0, 1.0, 1.0)])
+def test_axes_without_length_are_refused(steps: tuple[float, float, float]) -> None:
+    """Also where a length is the smallest number there is, without a warning of Python's."""
+    with pytest.raises(FieldError, match="the affine is singular"):
+        turned = np.diag([*steps, 1.0])[[1, 0, 2, 3]]
+        Volume(np.zeros((2, 2, 2), np.float32, order="F"), affine=turned)
+
+
 @pytest.mark.parametrize("far", [1e101, -1e300, 1.7e308])
 @pytest.mark.parametrize("place", [(0, 0), (1, 0), (2, 3)])
 def test_places_beyond_all_reckoning_are_refused(far: float, place: tuple[int, int]) -> None:
