@@ -108,7 +108,7 @@ def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> 
 
 def magnitudes(tuples: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     """(n,) the lengths of (n, k) vectors; infinite where `dtype` has no such number."""
-    with np.errstate(over="ignore", under="ignore"):
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         lengths = np.sqrt((tuples.astype(np.float64) ** 2).sum(axis=1))
         huge = np.flatnonzero(np.isinf(lengths))  # or their squares are
         if len(huge):

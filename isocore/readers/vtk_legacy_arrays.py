@@ -93,7 +93,8 @@ class Cursor:
             return np.frombuffer(self.data, dtype, found.count, found.start) if found.count else np.empty(0, dtype)
         try:
             if found.dtype.kind == "f":
-                return floats(self.data, found.start, found.end).astype(found.dtype, copy=False)
+                with np.errstate(over="ignore"):  # beyond float32 is infinite
+                    return floats(self.data, found.start, found.end).astype(found.dtype, copy=False)
             numbers = integers(self.data, found.start, found.end)
         except BadBlock as error:
             raise InputError(f"{self.path}: array {found.name!r} {error}") from error

@@ -217,3 +217,12 @@ def test_a_spacing_beyond_all_reckoning_is_refused(tmp_path):
     path = image(tmp_path, {"u": ramp().ravel()}, place=f'Spacing="1e300 1 1" Direction="{turned}"')
     with pytest.raises(IsocoreError, match=r"a\.vti: its origin, spacing or direction is too large"):
         read(path)
+
+
+@pytest.mark.parametrize("step", ["1e-320", "1e300"])
+def test_steps_beyond_all_reckoning_are_refused_in_words(step, tmp_path):
+    """Neither a warning of a library nor a place that is infinite."""
+    place = f'Origin="1e308 0 0" Spacing="{step} {step} {step}"'
+    with pytest.raises(IsocoreError) as caught:
+        read(image(tmp_path, {"r": flat(ramp())}, place=place))
+    assert "encountered" not in str(caught.value)
