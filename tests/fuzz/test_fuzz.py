@@ -8,7 +8,7 @@ import pytest
 from fuzz.run import fuzz, saved
 from fuzz.targets import MISBEHAVING, TARGETS
 
-RUNS = 1100
+RUNS = 900
 
 
 @pytest.mark.parametrize("target", TARGETS)

@@ -212,3 +212,13 @@ def test_any_damaged_byte_is_read_or_refused_in_one_line(data, way, tmp_path):
 def test_real_files_have_as_many_triangles_as_vtk_finds(name, field, isovalue, triangles):
     """Counts are VTK 9.7's, of its cleaned grid."""
     assert measure(extract(read(DATA / name, ReadOptions(field=field)), isovalue, backend="mc")).triangles == triangles
+
+
+def test_a_number_that_is_no_float32_is_infinite(tmp_path):
+    """It counts as outside, as in VTU, without a warning of Python's."""
+    path = write_grid(tmp_path / "a.vtk", mixed())
+    text = path.read_text()
+    start = text.index("LOOKUP_TABLE default\n", text.index("SCALARS f float")) + len("LOOKUP_TABLE default\n")
+    path.write_text(f"{text[:start]}1e300 {text[text.index(' ', start) + 1 :]}")
+    mesh = read(path, ReadOptions(field="f"))
+    assert np.isinf(mesh.values).sum() == 1 and any("not finite" in warning for warning in mesh.warnings)
