@@ -40,6 +40,8 @@ def extract(
     *,
     backend: str | None = None,
     max_error: float | str | None = None,
+    simplify: bool | None = None,
+    triangles: int | None = None,
     block_size: int | None = None,
     topology: Topology | None = None,
     smooth: int | None = None,
@@ -55,7 +57,8 @@ def extract(
 
     isovalue: a number, or a text as the command line takes it: "otsu", "p90" (a percentile), "auto".
     backend: "asc", "thinning" or "mc"; None is the default of the field.
-    max_error: asc, how far marching cubes' vertices may lie from the surface: voxels (0.25), or a text as "0.3mm".
+    max_error: how far the surface may lie from marching cubes', both ways: voxels (0.25), a mesh's unit, or "0.3mm".
+    simplify: the fewest triangles within it; None is yes for asc. triangles: at most so many, as in Options.
     block_size: asc, cells along the edge of the largest box. topology: mc, as in Options.
     smooth: rounds of smoothing, in which no sample changes sides; of a volume, by mc.
     keep_largest: of the surface's pieces, so many of the largest. min_piece: drop those of fewer triangles, or of a
@@ -71,7 +74,8 @@ def extract(
         raise OptionError(f"field: is a {kind}, not a Volume or CellMesh; see Volume.from_array and read")
     with arguments_named():
         asked = options or options_of(
-            threads, cap, normals, block_size, max_error, topology, smooth, keep_largest, min_piece, fill_bubbles
+            threads, cap, normals, block_size, max_error, simplify, triangles, topology, smooth, keep_largest,
+            min_piece, fill_bubbles,
         )
         check_unit(asked, field.unit)
         outlook = Outlook(isovalues=1, named=backend is not None)
@@ -102,6 +106,8 @@ def options_of(
     normals: bool | None,
     block_size: int | None,
     max_error: float | str | None,
+    simplify: bool | None,
+    triangles: int | None,
     topology: Topology | None,
     smooth: int | None,
     keep_largest: int | None = None,
@@ -117,6 +123,8 @@ def options_of(
         normals=normals,
         block_size=block_size,
         max_error=_bound(max_error),
+        simplify=simplify,
+        triangles=None if triangles is None else at_least_one("triangles", triangles),
         topology=topology,
         smooth=smooth or None,
         keep_largest=None if keep_largest is None else at_least_one("keep_largest", keep_largest),

@@ -39,6 +39,8 @@ def convert_files(
     space: Space = "native",
     volume: int | Literal["all"] | None = None,
     max_error: float | str | None = None,
+    simplify: bool | None = None,
+    triangles: int | None = None,
     block_size: int | None = None,
     topology: Topology | None = None,
     smooth: int | None = None,
@@ -87,7 +89,8 @@ def convert_files(
             backend=backend,
             options=options
             or options_of(
-                share, cap, normals, block_size, max_error, topology, smooth, keep_largest, min_piece, fill_bubbles
+                share, cap, normals, block_size, max_error, simplify, triangles, topology, smooth, keep_largest,
+                min_piece, fill_bubbles,
             ),
             read_options=_reading(read_options, volume),
             space=space,

@@ -221,7 +221,7 @@ def stamped(tmp_path: Path) -> tuple[Path, Path]:
 def if_changed(source: Path, *more: str) -> Result:
     folder = source.parent.parent
     words = [str(source.parent), "-i", "50", "-d", str(folder / "out"), "--report", str(folder / "r.json")]
-    return CliRunner().invoke(convert, [*words, "--if-changed", *more])
+    return CliRunner().invoke(convert, [*words, "--no-simplify", "--if-changed", *more])
 
 
 def status(tmp_path: Path) -> str:

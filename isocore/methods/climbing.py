@@ -26,7 +26,7 @@ def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extr
     # One more pass over the samples: worth it only where several isovalues then read no more than they cross.
     ranges = _kernels.sample_ranges(volume.samples, options.threads) if outlook.isovalues > 1 else None
 
-    simplify = volume_simplifier(volume, options)
+    simplify = volume_simplifier(volume, options, default=True)
 
     def extract(isovalue: float) -> Extraction:
         asked = (volume.stored_isovalue(isovalue), volume.inside_is_below, options.cap, options.threads)

@@ -61,9 +61,12 @@ class Simplifier:
         """A kernel's mesh with fewer triangles. reference: makes the surface that it stands for, if not that itself."""
         known = mesh if reference is None else reference()
         start = perf_counter()
+        if not self.is_bounded and 2 * self.most_triangles > len(mesh[1]):
+            mesh = known  # a coarse mesh has an error of its own, which so many triangles need not have
         found, error = self._run(mesh, known)
-        if found.unproved and reference is not None and self.is_bounded:
-            found, error = self._run(known, known)  # a coarse triangle is too far from the reference: start from that
+        if found.unproved and mesh is not known and self.is_bounded:
+            mesh = known  # a coarse triangle is too far from the reference, so start from that
+            found, error = self._run(mesh, known)
         facts = Simplification(
             triangles_before=len(mesh[1]),
             collapses=found.collapses,
@@ -132,11 +135,11 @@ class Simplifier:
         return (f"{asked}, since fewer would change the surface's topology or shape",)
 
 
-def volume_simplifier(volume: Volume, options: Options) -> Simplifier | None:
-    """What is asked for a volume; None where nothing is."""
+def volume_simplifier(volume: Volume, options: Options, *, default: bool = False) -> Simplifier | None:
+    """What is asked for a volume; None where nothing is. default: whether it is done unless it is refused."""
     given = options.max_error is not None
     bound = bound_for(volume, options.max_error or DEFAULT_MAX_ERROR)
-    if not _wanted(options, False):
+    if not _wanted(options, default and math.isfinite(bound.distance)):
         return None
     spacing = (float(volume.spacing[0]), float(volume.spacing[1]), float(volume.spacing[2]))
     return Simplifier(bound, given, options.triangles or 0, spacing, volume.unit, options.threads)

@@ -57,7 +57,9 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
     const unsigned over = ~beside.bits() & valid;
     const unsigned whole = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
     unsigned within = whole;
-    for (unsigned bits = over & ~whole; bits != 0; bits &= bits - 1) {
+    unsigned partly = over & ~whole;
+    if (partly != 0) partly &= ~apart(u, v);
+    for (unsigned bits = partly; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         std::array<Height, 3> triangle;
         for (std::size_t n = 0; n < 3; ++n) triangle[n] = {u[n].each()[lane], v[n].each()[lane], h[n].each()[lane]};
@@ -82,6 +84,29 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
     }
     count_ += static_cast<std::size_t>(std::popcount(within));
     return true;
+}
+
+// Which of eight triangles have a side that the column's triangle lies beyond.
+unsigned Column::apart(const Vector<Floats>& u, const Vector<Floats>& v) const {
+    const Floats zero(0.0f), blur(kBlur);
+    const std::array<Floats, 3> corner_u{zero, Floats(frame_.length), Floats(frame_.top_u)};
+    const std::array<Floats, 3> corner_v{zero, zero, Floats(frame_.top_v)};
+    auto out = zero < zero;
+    for (std::size_t n = 0; n < 3; ++n) {
+        const std::size_t m = n == 2 ? 0 : n + 1, other = 3 - n - m;
+        const Floats along = u[m] - u[n], across = v[m] - v[n];
+        const auto side = [&](const Floats& at_u, const Floats& at_v) {
+            return along * (at_v - v[n]) - across * (at_u - u[n]);
+        };
+        const Floats own = side(u[other], v[other]);
+        const Floats a = side(corner_u[0], corner_v[0]), b = side(corner_u[1], corner_v[1]),
+                     c = side(corner_u[2], corner_v[2]);
+        const Floats longer = greatest(along, zero - along) + greatest(across, zero - across);
+        const Floats margin = blur * longer * Floats(1 + frame_.length);
+        out = out | ((zero < own) & (greatest(a, greatest(b, c)) < zero - margin)) |
+              ((own < zero) & (margin < least(a, least(b, c))));
+    }
+    return out.bits();
 }
 
 // What of a triangle lies in the column: clipped at the column's three walls, a blur outside.

@@ -14,6 +14,14 @@ constexpr std::array<float, Ring::kRoom> kNumbers = [] {
     return out;
 }();
 
+// Asks for memory that is looked at soon.
+template <class T>
+void prefetch([[maybe_unused]] const T* place) {
+#if defined(__GNUC__)
+    __builtin_prefetch(place);
+#endif
+}
+
 float size_of(const Spot& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]); }
 
 }  // namespace
@@ -29,10 +37,10 @@ bool Crossings<Real>::are_there(const Star& star, const Facets& facets) {
     }
     find_cubes(star);
     find_candidates(star);
-    for (const std::int32_t triangle : candidates_) {
-        if (meets_a_face(star, candidate(star, triangle), 1)) return true;
-    }
-    return false;
+    return std::any_of(candidates_.begin(), candidates_.end(), [&](std::int32_t triangle) {
+        const auto found = candidate(star, triangle);
+        return found && meets_a_face(star, *found, 1);
+    });
 }
 
 template <class Real>
@@ -68,34 +76,44 @@ void Crossings<Real>::find_cubes(const Star& star) {
     }
 }
 
+// Each triangle in these cubes once, but for the star's own.
 template <class Real>
 void Crossings<Real>::find_candidates(const Star& star) {
-    std::vector<std::int32_t> cubes(cubes_);
-    std::sort(cubes.begin(), cubes.end());
-    cubes.erase(std::unique(cubes.begin(), cubes.end()), cubes.end());
+    for (std::size_t n = 0; n < star.count; ++n) seen_triangles_.add(star.triangles[n]);
     candidates_.clear();
-    for (const std::int32_t cube : cubes)
-        grid_.each_in(cube, [&](std::int32_t triangle) { candidates_.push_back(triangle); });
-    std::sort(candidates_.begin(), candidates_.end());
-    candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
-    std::array<std::int32_t, Ring::kRoom> own;
-    std::copy_n(star.triangles.begin(), star.count, own.begin());
-    std::sort(own.begin(), own.begin() + star.count);
-    std::erase_if(candidates_, [&](std::int32_t triangle) {
-        return std::binary_search(own.begin(), own.begin() + star.count, triangle);
-    });
+    for (const std::int32_t cube : cubes_) {
+        if (!seen_cubes_.add(cube)) continue;
+        grid_.each_in(cube, [&](std::int32_t triangle) {
+            if (!seen_triangles_.add(triangle)) return;
+            candidates_.push_back(triangle);
+            prefetch(mesh_.triangles.data() + triangle);
+        });
+    }
+    for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
+    for (const std::int32_t triangle : candidates_) seen_triangles_.forget_near(triangle);
+    for (std::size_t n = 0; n < star.count; ++n) seen_triangles_.forget_near(star.triangles[n]);
+    for (const std::int32_t triangle : candidates_) {
+        for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)
+            prefetch(mesh_.places.data() + corner);
+    }
 }
 
+// Nothing if the triangle is clearly apart from all faces.
 template <class Real>
-auto Crossings<Real>::candidate(const Star& star, std::int32_t number) const -> Candidate {
+auto Crossings<Real>::candidate(const Star& star, std::int32_t number) const -> std::optional<Candidate> {
     const Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
     const auto& origin = mesh_.places[static_cast<std::size_t>(star.centre)].at;
     Candidate out{triangle.corners, {-1, -1, -1}, {}};
-    for (std::size_t n = 0; n < 3; ++n) {
+    for (std::size_t n = 0; n < 3; ++n)
         out.at[n] = mesh_.relative(mesh_.places[static_cast<std::size_t>(out.numbers[n])].at, origin);
-        const auto end = star.neighbours.begin() + star.count;
-        const auto found = std::find(star.neighbours.begin(), end, out.numbers[n]);
-        if (found != end) out.in_ring[n] = static_cast<int>(found - star.neighbours.begin());
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (std::max({out.at[0][a], out.at[1][a], out.at[2][a]}) < lowest_[a]) return {};
+        if (highest_[a] < std::min({out.at[0][a], out.at[1][a], out.at[2][a]})) return {};
+    }
+    for (std::size_t n = 0; n < 3; ++n) {
+        for (std::size_t m = 0; m < star.count; ++m) {
+            if (star.neighbours[m] == out.numbers[n]) out.in_ring[n] = static_cast<int>(m);
+        }
     }
     return out;
 }
@@ -109,7 +127,6 @@ bool Crossings<Real>::meets_a_face(const Star& star, const Candidate& candidate,
     for (std::size_t a = 0; a < 3; ++a) {
         low[a] = std::min({at[0][a], at[1][a], at[2][a]});
         high[a] = std::max({at[0][a], at[1][a], at[2][a]});
-        if (high[a] < lowest_[a] || highest_[a] < low[a]) return false;
     }
     const Spot one = minus(at[1], at[0]), other = minus(at[2], at[0]), normal = cross(one, other);
     const float reach = std::max({reach_, size_of(at[0]), size_of(at[1]), size_of(at[2])});

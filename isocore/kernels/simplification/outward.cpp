@@ -10,26 +10,32 @@ namespace isocore::simplification {
 template <class Real>
 void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
     const auto& origin = mesh.places[static_cast<std::size_t>(ring.centre)].at;
-    numbers_.clear();
-    for (auto& axis : places_) axis.clear();
+    std::size_t count = 0;
     const auto add = [&](std::int32_t number) {
-        numbers_.push_back(number);
+        if (count + kLanes >= numbers_.size()) make_room(2 * count + 16 * kLanes);
+        numbers_[count] = number;
         const Spot at = mesh.relative(mesh.places[static_cast<std::size_t>(number)].at, origin);
-        for (std::size_t a = 0; a < 3; ++a) places_[a].push_back(at[a]);
+        for (std::size_t a = 0; a < 3; ++a) places_[a][count] = at[a];
+        ++count;
     };
     add(ring.centre);
     for (std::size_t n = 0; n < ring.count; ++n) {
         std::int32_t witness = mesh.triangles[static_cast<std::size_t>(ring.triangles[n])].witness;
         for (; witness != kNone; witness = mesh.places[static_cast<std::size_t>(witness)].next) add(witness);
     }
-    const std::size_t room = (numbers_.size() + kLanes - 1) / kLanes * kLanes;
-    for (auto& axis : places_) axis.resize(room, 0.0f);  // lanes past the end are as the centre, which is first
+    count_ = count;
+    for (auto& axis : places_) Floats(0.0f).store(axis.data() + count);  // lanes past the end are as the centre
+}
+
+void Witnesses::make_room(std::size_t room) {
+    numbers_.resize(room);
     nearest_.resize(room);
+    for (auto& axis : places_) axis.resize(room);
 }
 
 bool Witnesses::are_near(const Facets& facets, float limit) {
     const Floats most(limit * limit);
-    for (std::size_t n = 0; n < places_[0].size(); n += kLanes) {
+    for (std::size_t n = 0; n < count_; n += kLanes) {
         const Vector<Floats> points{Floats(places_[0].data() + n), Floats(places_[1].data() + n),
                                     Floats(places_[2].data() + n)};
         Floats best(std::numeric_limits<float>::infinity()), which(0.0f);
@@ -48,7 +54,7 @@ template <class Real>
 void Witnesses::hand_over(Mesh<Real>& mesh, const Star& star) const {
     for (std::size_t n = 0; n < star.count; ++n)
         mesh.triangles[static_cast<std::size_t>(star.triangles[n])].witness = kNone;
-    for (std::size_t n = numbers_.size(); n-- > 0;) {
+    for (std::size_t n = count_; n-- > 0;) {
         const std::size_t face = static_cast<std::size_t>(nearest_[n]) + 1;
         Triangle& triangle = mesh.triangles[static_cast<std::size_t>(star.triangles[face])];
         mesh.places[static_cast<std::size_t>(numbers_[n])].next = triangle.witness;

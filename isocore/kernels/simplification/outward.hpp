@@ -28,6 +28,9 @@ class Witnesses {
     void hand_over(Mesh<Real>& mesh, const Star& star) const;
 
   private:
+    void make_room(std::size_t room);
+
+    std::size_t count_ = 0;
     std::vector<std::int32_t> numbers_;
     Vector<std::vector<float>> places_;
     std::vector<float> nearest_;

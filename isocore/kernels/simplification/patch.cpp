@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace isocore::simplification {
 
@@ -35,14 +36,18 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
         high[a] = cell(box.high[a]);
     }
     size_ = 0;
-    reference.each_between(low, high, [&](std::int32_t triangle) {
-        if (size_ + kLanes >= columns_[0].size()) make_room(2 * size_ + 16 * kLanes);
-        for (std::size_t n = 0; n < 3; ++n) {
-            const Spot at = mesh.relative(reference.corner(triangle, n), origin);
-            for (std::size_t a = 0; a < 3; ++a) columns_[3 * n + a][size_] = at[a];
+    reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
+        if (size_ + (end - first) + kLanes > room_) make_room(2 * (size_ + (end - first)) + 16 * kLanes);
+        float* const to = numbers_.data() + size_;
+        for (std::uint32_t entry = first; entry < end; ++entry) {
+            const std::int32_t triangle = reference.entry(entry);
+            for (std::size_t n = 0; n < 3; ++n) {
+                const Spot at = mesh.relative(reference.corner(triangle, n), origin);
+                for (std::size_t a = 0; a < 3; ++a) to[(3 * n + a) * room_ + (entry - first)] = at[a];
+            }
+            to[kBorder * room_ + (entry - first)] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
         }
-        columns_[kBorder][size_] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
-        ++size_;
+        size_ += end - first;
     });
     end();
 }
@@ -52,32 +57,36 @@ template void Patch::gather(const Reference<double>&, const Mesh<double>&, const
 
 void Patch::select(const Patch& from, const Box& box) {
     size_ = 0;
-    if (columns_[0].size() < from.size_ + 2 * kLanes) make_room(2 * from.size_ + 2 * kLanes);
+    if (room_ < from.size_ + 2 * kLanes) make_room(2 * from.size_ + 2 * kLanes);
     for (std::size_t first = 0; first < from.size_; first += kLanes) {
         auto apart = Floats(0.0f) < Floats(0.0f);
         for (std::size_t a = 0; a < 3; ++a) {
-            const auto at = [&](std::size_t n) { return Floats(from.columns_[3 * n + a].data() + first); };
+            const auto at = [&](std::size_t n) { return Floats(from.column(3 * n + a) + first); };
             apart = apart | (greatest(at(0), greatest(at(1), at(2))) < Floats(box.low[a])) |
                     (Floats(box.high[a]) < least(at(0), least(at(1), at(2))));
         }
-        for (unsigned bits = ~apart.bits() & 255; bits != 0; bits &= bits - 1) {
-            const std::size_t n = first + static_cast<std::size_t>(std::countr_zero(bits));
-            for (std::size_t column = 0; column < kColumns; ++column)
-                columns_[column][size_] = from.columns_[column][n];
-            ++size_;
-        }
+        const unsigned valid = from.size_ - first < kLanes ? (1u << (from.size_ - first)) - 1 : 255u;
+        const unsigned bits = ~apart.bits() & valid;
+        if (bits == 0) continue;
+        for (std::size_t n = 0; n < kColumns; ++n) Floats(from.column(n) + first).pack(bits, column(n) + size_);
+        size_ += static_cast<std::size_t>(std::popcount(bits));
     }
     end();
 }
 
-void Patch::make_room(std::size_t size) {
-    for (auto& column : columns_) column.resize(size);
+// Keeps what there is.
+void Patch::make_room(std::size_t room) {
+    std::vector<float> numbers(kColumns * room);
+    for (std::size_t n = 0; n < kColumns; ++n) std::copy_n(column(n), std::min(size_, room), numbers.data() + n * room);
+    numbers_ = std::move(numbers);
+    room_ = room;
 }
 
+// So that lanes past the end hold numbers.
 void Patch::end() {
     constexpr float kFar = 1e9f;
-    if (columns_[0].size() < size_ + kLanes) make_room(size_ + kLanes);
-    for (auto& column : columns_) Floats(kFar).store(column.data() + size_);
+    if (room_ < size_ + kLanes) make_room(size_ + kLanes);
+    for (std::size_t n = 0; n < kColumns; ++n) Floats(kFar).store(column(n) + size_);
 }
 
 }  // namespace isocore::simplification

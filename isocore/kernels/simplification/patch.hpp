@@ -31,16 +31,14 @@ class Patch {
 
     // Corner `corner` of eight triangles from `first` on. Lanes past the last triangle hold corners far away.
     Vector<Floats> in_lanes(std::size_t corner, std::size_t first) const {
-        const auto lanes = [&](std::size_t a) { return Floats(columns_[3 * corner + a].data() + first); };
+        const auto lanes = [&](std::size_t a) { return Floats(column(3 * corner + a) + first); };
         return {lanes(0), lanes(1), lanes(2)};
     }
     Spot corner(std::size_t triangle, std::size_t n) const {
-        return {columns_[3 * n][triangle], columns_[3 * n + 1][triangle], columns_[3 * n + 2][triangle]};
+        return {column(3 * n)[triangle], column(3 * n + 1)[triangle], column(3 * n + 2)[triangle]};
     }
     // Of eight triangles from `first` on: a bit for each that may have a side on the reference's border.
-    unsigned at_border(std::size_t first) const {
-        return (Floats(0.0f) < Floats(columns_[kBorder].data() + first)).bits();
-    }
+    unsigned at_border(std::size_t first) const { return (Floats(0.0f) < Floats(column(kBorder) + first)).bits(); }
 
   private:
     static constexpr std::size_t kBorder = 9, kColumns = 10;
@@ -49,7 +47,11 @@ class Patch {
     void end();
 
     std::size_t size_ = 0;
-    std::array<std::vector<float>, kColumns> columns_;
+    const float* column(std::size_t number) const { return numbers_.data() + number * room_; }
+    float* column(std::size_t number) { return numbers_.data() + number * room_; }
+
+    std::size_t room_ = 0;        // of a column
+    std::vector<float> numbers_;  // column by column
 };
 
 }  // namespace isocore::simplification

@@ -64,12 +64,6 @@ void Reference<Real>::each_entry(const Visit& visit) const {
     }
 }
 
-template <class Real>
-std::uint32_t Reference<Real>::first_of(std::size_t cell) const {
-    const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
-    return starts_[ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below))];
-}
-
 // Around a vertex inside the surface, each neighbour is the end of one opposite side and the start of another; at the
 // border, and where more than two triangles share a side, some are not. Numbers are scattered before they are added up,
 // so that no sum is 0 by chance.
@@ -88,6 +82,7 @@ void Reference<Real>::find_border() {
     }
     at_border_.resize(mesh_.vertex_count);
     std::transform(sums.begin(), sums.end(), at_border_.begin(), [](std::uint32_t sum) { return sum != 0; });
+    has_border_ = std::find(at_border_.begin(), at_border_.end(), 1) != at_border_.end();
 }
 
 template class Reference<float>;

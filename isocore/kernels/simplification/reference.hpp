@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,17 +23,21 @@ class Reference {
     const MeshArrays<Real>& mesh() const { return mesh_; }
     const Cells& cells() const { return cells_; }
 
-    // visit(triangle) of each triangle in the cells from `low` to `high`, both included. A triangle that lies in
-    // several cells may be visited several times.
+    // visit(first, end) of each run of entries in the cells from `low` to `high`, both included. A triangle that lies
+    // in several cells may have several entries there.
     template <class Visit>
-    void each_between(const Cell& low, const Cell& high, const Visit& visit) const {
+    void each_run_between(const Cell& low, const Cell& high, const Visit& visit) const {
         for (std::int32_t k = low[2]; k <= high[2]; ++k) {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                const std::uint32_t first = first_of(number({low[0], j, k}));
                 const std::uint32_t end = first_of(number({high[0], j, k}) + 1);
-                for (std::uint32_t n = first_of(number({low[0], j, k})); n < end; ++n)
-                    visit(entries_.empty() ? static_cast<std::int32_t>(n) : entries_[n]);
+                if (first < end) visit(first, end);
             }
         }
+    }
+    // The triangle of an entry.
+    std::int32_t entry(std::uint32_t number) const {
+        return entries_.empty() ? static_cast<std::int32_t>(number) : entries_[number];
     }
 
     std::array<Real, 3> corner(std::int32_t triangle, std::size_t n) const {
@@ -41,6 +46,7 @@ class Reference {
     }
     // Is a side of the triangle on the surface's border, or could it be?
     bool may_be_at_border(std::int32_t triangle) const {
+        if (!has_border_) return false;
         return at_border_[vertex(triangle, 0)] + at_border_[vertex(triangle, 1)] + at_border_[vertex(triangle, 2)] > 1;
     }
 
@@ -54,7 +60,10 @@ class Reference {
                    (static_cast<std::size_t>(cell[1]) + cells_.dims[1] * static_cast<std::size_t>(cell[2]));
     }
     // The first entry of this cell or of a later one.
-    std::uint32_t first_of(std::size_t cell) const;
+    std::uint32_t first_of(std::size_t cell) const {
+        const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
+        return starts_[ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below))];
+    }
     template <class Visit>
     void each_entry(const Visit& visit) const;
     void find_border();
@@ -66,6 +75,7 @@ class Reference {
     Array<std::uint32_t> starts_;          // of each occupied cell: its first entry
     Array<std::int32_t> entries_;          // triangles; empty where entry n is triangle n
     std::vector<std::uint8_t> at_border_;  // by vertex
+    bool has_border_ = false;
 };
 
 }  // namespace isocore::simplification

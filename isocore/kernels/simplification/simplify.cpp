@@ -57,8 +57,9 @@ class Simplification {
     void run_to_count() {
         std::vector<std::int32_t> movable;
         Contraction<Real>& worker = *workers_[0];
-        for (float limit = std::min(kFirstLimit, limit_);; limit = std::min(2 * limit, limit_)) {
-            worker.set_limit(limit);
+        const float farthest = limit_;
+        for (limit_ = std::min(kFirstLimit, farthest);; limit_ = std::min(2 * limit_, farthest)) {
+            worker.set_limit(limit_);
             movable.clear();
             for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
                 Vertex& vertex = mesh_.vertices[v];
@@ -66,10 +67,12 @@ class Simplification {
                 vertex.movable = vertex.count > 0 && !vertex.open && !vertex.odd;
                 if (vertex.movable) movable.push_back(static_cast<std::int32_t>(v));
             }
-            const std::size_t left = input_.triangle_count - 2 * worker.collapses;
-            if (left <= options_.most_triangles || movable.empty()) return;
-            sweep(movable, mesh_, worker, costs_, (left - options_.most_triangles + 1) / 2);
-            if (limit == limit_) return;
+            const auto surplus = [&] {
+                const std::size_t left = input_.triangle_count - 2 * worker.collapses;
+                return left > options_.most_triangles ? (left - options_.most_triangles + 1) / 2 : 0;
+            };
+            sweep(movable, mesh_, worker, costs_, surplus());
+            if (surplus() == 0 || limit_ == farthest) return;
         }
     }
 
@@ -138,11 +141,12 @@ class Simplification {
     void measure(Facts& facts) {
         const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
                          static_cast<float>(options_.other[2])};
+        const bool is_provable = std::isfinite(options_.max_error) || limit_ <= Backward<Real>::kFarthest;
         const bool is_one_unit = other == mesh_.stretch();
         for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
             if (mesh_.triangles[t].is_gone()) continue;
             float& proved = mesh_.proved[t];
-            if (std::isinf(proved) && std::isfinite(options_.max_error))
+            if (std::isinf(proved) && is_provable)
                 proved = workers_[0]->backward().distance(static_cast<std::int32_t>(t), limit_ - 1e-5f);
             if (std::isinf(proved))
                 ++facts.unproved;

@@ -48,6 +48,7 @@ class TriangleGrid {
             static_cast<std::size_t>(cube[0]) +
             dims_[0] * (static_cast<std::size_t>(cube[1]) + dims_[1] * static_cast<std::size_t>(cube[2])));
     }
+    std::size_t cube_count() const { return first_.size(); }
     const Cells& cells() const { return cells_; }
 
   private:

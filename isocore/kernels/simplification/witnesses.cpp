@@ -61,43 +61,81 @@ float squared_distance(const Spot& a, const Spot& b, const Spot& c) {
     return off * off / dot(normal, normal);
 }
 
-// The triangle nearest to a place: among those in the cubes within the limit, or else within ever more.
+// Looks for the triangle nearest to a place.
 template <class Real>
-std::int32_t nearest(const Mesh<Real>& mesh, const TriangleGrid& grid, const std::array<Real, 3>& place, float limit) {
-    const Cells& cells = grid.cells();
-    std::int32_t found = kNone;
-    for (float reach = limit; found == kNone; reach *= 2) {
-        float best = std::numeric_limits<float>::infinity();
+class Nearest {
+  public:
+    Nearest(const Mesh<Real>& mesh, const TriangleGrid& grid, const std::array<Real, 3>& place)
+        : mesh_(mesh), grid_(grid), place_(place) {}
+
+    // Most are found in the cube around the place, or in those that are no further away than what was found there.
+    // Else within ever more; kNone if there are no triangles.
+    std::int32_t find(float limit) {
+        bool is_all = look_within(0);
+        if (found_ != kNone && std::sqrt(best_) <= limit) {
+            if (std::sqrt(best_) > std::min(kNearEnough, 0.25f * limit)) look_within(std::sqrt(best_));
+            return found_;
+        }
+        for (float reach = std::max(limit, 1e-3f); !is_all; reach *= 2) {
+            is_all = look_within(reach);
+            if (found_ != kNone && std::sqrt(best_) <= reach) break;
+        }
+        return found_;
+    }
+
+  private:
+    static constexpr float kNearEnough = 0.125f;  // cells
+
+    // Looks at the cubes that are so near. Are these all?
+    bool look_within(float reach) {
+        const Cells& cells = grid_.cells();
         Cell low{}, high{};
         bool is_all = true;
         for (std::size_t a = 0; a < 3; ++a) {
-            const double step = static_cast<double>(reach / mesh.stretch()[a]), at = static_cast<double>(place[a]);
+            const double step = static_cast<double>(reach / mesh_.stretch()[a]), at = static_cast<double>(place_[a]);
             low[a] = cells.clamped(cells.in_cells(at - step, a), a) >> TriangleGrid::kBits;
             high[a] = cells.clamped(cells.in_cells(at + step, a), a) >> TriangleGrid::kBits;
-            is_all = is_all && low[a] == 0 &&
-                     static_cast<std::size_t>(high[a]) == (cells.dims[a] - 1) >> TriangleGrid::kBits;
+            const std::size_t last = (cells.dims[a] - 1) >> TriangleGrid::kBits;
+            is_all = is_all && low[a] == 0 && static_cast<std::size_t>(high[a]) == last;
         }
+        const auto is_seen = [&](const Cell& cube) {
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (cube[a] < low_[a] || cube[a] > high_[a]) return false;
+            }
+            return true;
+        };
         for (std::int32_t k = low[2]; k <= high[2]; ++k) {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
                 for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-                    grid.each_in(grid.number({i, j, k}), [&](std::int32_t triangle) {
-                        const auto& c = mesh.triangles[static_cast<std::size_t>(triangle)].corners;
-                        const auto corner = [&](std::size_t n) {
-                            return mesh.relative(mesh.places[static_cast<std::size_t>(c[n])].at, place);
-                        };
-                        const float squared = squared_distance(corner(0), corner(1), corner(2));
-                        if (squared < best || (squared == best && triangle < found)) {
-                            best = squared;
-                            found = triangle;
-                        }
-                    });
+                    if (!is_seen({i, j, k}))
+                        grid_.each_in(grid_.number({i, j, k}), [&](std::int32_t triangle) { look_at(triangle); });
                 }
             }
         }
-        if (is_all || !(reach > 0)) break;
+        low_ = low;
+        high_ = high;
+        return is_all;
     }
-    return found;
-}
+
+    void look_at(std::int32_t triangle) {
+        const auto& c = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
+        const auto corner = [&](std::size_t n) {
+            return mesh_.relative(mesh_.places[static_cast<std::size_t>(c[n])].at, place_);
+        };
+        const float squared = squared_distance(corner(0), corner(1), corner(2));
+        if (squared < best_ || (squared == best_ && triangle < found_)) {
+            best_ = squared;
+            found_ = triangle;
+        }
+    }
+
+    const Mesh<Real>& mesh_;
+    const TriangleGrid& grid_;
+    const std::array<Real, 3>& place_;
+    Cell low_{0, 0, 0}, high_{-1, -1, -1};  // seen already
+    float best_ = std::numeric_limits<float>::infinity();
+    std::int32_t found_ = kNone;
+};
 
 }  // namespace
 
@@ -114,7 +152,10 @@ void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& refer
     constexpr std::size_t kAtOnce = 4096;
     parallel_for(threads, (numbers.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t task) {
         const std::size_t end = std::min(numbers.size(), (task + 1) * kAtOnce);
-        for (std::size_t n = task * kAtOnce; n < end; ++n) triangles[n] = nearest(mesh, grid, place(n), limit);
+        for (std::size_t n = task * kAtOnce; n < end; ++n) {
+            const std::array<Real, 3> at = place(n);
+            triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
+        }
     });
     // Those of one triangle follow each other in memory.
     std::vector<std::size_t> next(mesh.triangles.size() + 1);
