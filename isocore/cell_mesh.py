@@ -15,13 +15,15 @@ from isocore.errors import FieldError, printable
 class Connectivity:
     """How the cells of a mesh came to hang together.
 
-    ghost_cells: left out, because the file marks them. joined_points: points that coincide with another and were
+    ghost_cells: left out, because the file marks them. repeated_cells: left out, because an earlier piece has them too.
+    joined_points: points that coincide with another and were
     joined with it. averaged_points: those that were left where the values of the joined points differ by more than
     rounding, so that their mean was taken; largest_difference: by how much. divided_cells: curved ones, which were
     divided into straight ones.
     """
 
     ghost_cells: int = 0
+    repeated_cells: int = 0
     joined_points: int = 0
     averaged_points: int = 0
     largest_difference: float = 0.0

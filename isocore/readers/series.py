@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -105,12 +106,19 @@ def _format(path: Path, file: Path) -> Format:
     return BY_SUFFIX[suffix]
 
 
-def _steps(path: Path) -> list[Step]:
+def _steps(path: Path) -> tuple[Step, ...]:
     """All steps by ascending time; InputError where the file is no series, or names nothing."""
+    found = path.stat()
+    return _steps_of(path, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=8)
+def _steps_of(path: Path, changed: int, size: int) -> tuple[Step, ...]:
+    """Read once for as long as the file stays as it is: every step of a long series asks for it several times."""
     steps = _from_json(path) if path.name.lower().endswith(".series") else _from_pvd(path)
     if not steps:
         raise InputError(f"{path}: names no steps, so there is nothing to contour; write it again")
-    return sorted(steps, key=lambda step: step.time)
+    return tuple(sorted(steps, key=lambda step: step.time))
 
 
 def _from_pvd(path: Path) -> list[Step]:

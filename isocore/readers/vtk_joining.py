@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
+from isocore.readers.cell_splitting import mixed
+from isocore.readers.vtk_cells import Block
 
 _MOST_THREADS = 4  # readers are not told how many there may be; it is a matter of milliseconds
 #: Values differ by rounding where they differ by less than this part of the largest: sixteen steps of float32.
@@ -73,6 +76,30 @@ def joined_values(
         apart = np.abs(values[members].astype(np.float64) - result[by.number[members]])
     members = members[~(apart <= rounding)]
     return _averaged(by, values, result, np.unique(by.number[members]), used)
+
+
+def repeated(blocks: Sequence[Block], by: Joining) -> list[npt.NDArray[np.bool_]]:
+    """Per block (m,) True for the cells that name the same points as an earlier one: layers that pieces share.
+
+    Only cells all of whose points were joined can be such; `blocks` have the new numbers. Cells are told apart by sums
+    of scrambled numbers, which two of them share by chance once in 2^64 pairs.
+    """
+    members = np.bincount(by.number, minlength=len(by.first)) > 1
+    shared = [np.flatnonzero(members[block.cells].all(axis=1)) for block in blocks]
+    keys = [
+        mixed(block.cells[some]).sum(axis=1, dtype=np.uint64) for block, some in zip(blocks, shared, strict=True)
+    ]
+    every = np.concatenate([np.empty(0, np.uint64), *keys])
+    order = np.argsort(every, kind="stable")
+    again = np.zeros(len(every), np.bool_)
+    again[order[1:]] = every[order[1:]] == every[order[:-1]]
+    masks, first = [], 0
+    for block, some in zip(blocks, shared, strict=True):
+        mask = np.zeros(len(block.cells), np.bool_)
+        mask[some] = again[first : first + len(some)]
+        first += len(some)
+        masks.append(mask)
+    return masks
 
 
 def _same(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:

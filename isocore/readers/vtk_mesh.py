@@ -24,7 +24,7 @@ from isocore.readers.vtk_cells import by_corners
 from isocore.readers.vtk_centres import SplitFaces, split_at_centres
 from isocore.readers.vtk_division import Divided, divided
 from isocore.readers.vtk_fields import FieldInfo, averaged
-from isocore.readers.vtk_joining import joined_values, joining
+from isocore.readers.vtk_joining import Joining, joined_values, joining, repeated
 from isocore.readers.vtk_pieces import Part, PieceData, checked, renumbered, together, used_points
 from isocore.readers.vtk_types import CORNERS
 from isocore.readers.vtk_warnings import cell_warnings, corner_warnings, joining_warnings, named, splitting_warnings
@@ -52,7 +52,7 @@ def assembled(
     counts = sum((Counter(part.counts) for part in parts), Counter[int]())
     ghosts = sum(part.ghosts for part in parts)
     warnings = cell_warnings(path, counts, ghosts)
-    whole, found = _hung_together(together(path, parts), field, options, ghosts)
+    whole, found = _hung_together(together(path, parts), field, options, (ghosts, len(parts)))
     blocks = [by_corners(block) for block in whole.blocks] if options.corners else whole.blocks
     shapes = divided(path, blocks, whole.points, whole.values, whole.weights)
     points, values, split, turned = _split(path, whole, shapes)
@@ -91,12 +91,12 @@ def _not_finite(values: npt.NDArray[Any]) -> int:
 
 
 def _hung_together(
-    part: Part, field: FieldInfo, options: MeshOptions, ghosts: int
+    part: Part, field: FieldInfo, options: MeshOptions, counts: tuple[int, int]
 ) -> tuple[Part, Connectivity]:
-    """Points that coincide are joined, and each has one value."""
+    """Points that coincide are joined, and each has one value. counts: ghosts, and pieces, which may share cells."""
     of_cells = field.of == "cells"
     by = None if options.keep_duplicates else joining(part.points, options.merge_points or 0.0)
-    joined, differing, largest = 0, 0, 0.0
+    joined, differing, largest, twice = 0, 0, 0.0, 0
     if by is not None:
         joined = by.joined
         values = part.values
@@ -105,11 +105,32 @@ def _hung_together(
             values, differing, largest = found.values, found.differing, found.largest
         weights = None if part.weights is None else part.weights[by.first]
         part = replace(renumbered(part, by.number), points=part.points[by.first], values=values, weights=weights)
+        if counts[1] > 1:
+            part, twice = _once(part, by)
     if of_cells:
         part = replace(part, values=_at_points(part))
     return part, Connectivity(
-        ghost_cells=ghosts, joined_points=joined, averaged_points=differing, largest_difference=largest
+        ghost_cells=counts[0],
+        repeated_cells=twice,
+        joined_points=joined,
+        averaged_points=differing,
+        largest_difference=largest,
     )
+
+
+def _once(part: Part, by: Joining) -> tuple[Part, int]:
+    """Without the cells that an earlier piece has too, and how many there were."""
+    masks = repeated(part.blocks, by)
+    count = sum(int(np.count_nonzero(mask)) for mask in masks)
+    if not count:
+        return part, 0
+    blocks = []
+    for block, mask in zip(part.blocks, masks, strict=True):
+        numbers = block.numbers
+        if isinstance(numbers, slice):
+            numbers = np.arange(numbers.start, numbers.stop)
+        blocks.append(replace(block, cells=block.cells[~mask], numbers=numbers[~mask]))
+    return replace(part, blocks=blocks), count
 
 
 def _at_points(part: Part) -> npt.NDArray[Any]:

@@ -67,6 +67,8 @@ def joining_warnings(found: Connectivity, field: FieldInfo, distance: float | No
         return []
     where = "coincide with others" if distance is None else f"lie within {distance:g} of others"
     warnings = [f"{found.joined_points:,} points {where} and were joined; --keep-duplicates leaves them apart"]
+    if found.repeated_cells:
+        warnings.append(f"{found.repeated_cells:,} cells are those of an earlier piece once more; they were left out")
     if found.averaged_points:
         warnings.append(
             f"{field.name} is discontinuous: at {found.averaged_points:,} points the joined values differ, by up to"

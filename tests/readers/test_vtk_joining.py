@@ -133,6 +133,14 @@ def test_pieces_are_joined_as_the_cells_of_one_are():
     assert mesh.tets.tolist() == TETS.tolist() and mesh.connectivity.joined_points == 3
 
 
+def test_the_same_cell_in_one_piece_stays_as_it_is_listed():
+    """Only pieces overlap; what a piece lists twice is its own."""
+    twice = np.array([0, 1, 2, 3] * 2)
+    piece = PieceData(POINTS, np.array([10, 10], np.uint8), np.array([4, 8]), twice, np.arange(5.0))
+    assert len(assembled("any.file", [piece], U, 0).tets) == 2
+    assert len(assembled("any.file", [piece, piece], U, 0).tets) == 1
+
+
 def test_points_that_nearly_coincide_are_joined_on_request():
     """Within the distance, and not beyond it."""
     piece = apart(shared([1, 2, 3, 4, 5]), moved=1e-5)
