@@ -54,9 +54,11 @@ def choose(path: str, fields: Sequence[FieldInfo], options: FieldChoice) -> Fiel
         if not candidates:
             raise FieldError(f"{path}: holds no point or cell field, so there is nothing to contour; add one")
         if len(candidates) > 1:
+            others = [field.name for field in useful if field.of != candidates[0].of]
+            more = f" and {len(others)} of cells ({', '.join(others)})" if others else ""
             raise OptionError(
                 f"{path}: holds {len(candidates)} {candidates[0].of[:-1]} fields"
-                f" ({', '.join(f.name for f in candidates)}); choose one with --field"
+                f" ({', '.join(f.name for f in candidates)}){more}; choose one with --field"
             )
         field = candidates[0]
     return field

@@ -147,3 +147,12 @@ def test_a_magnitude_is_found_also_where_its_square_is_no_number():
     vectors = np.array([[3e200, 4e200], [3.0, 4.0], [1e300, np.nan], [-np.inf, 0.0], [1.7e308, 1.7e308]])
     assert np.allclose(magnitudes(vectors, np.float64), [5e200, 5.0, np.nan, np.inf, np.inf], equal_nan=True)
     assert np.allclose(magnitudes(vectors, np.float32), [np.inf, 5.0, np.nan, np.inf, np.inf], equal_nan=True)
+
+
+def test_fields_of_cells_are_offered_too(tmp_path):
+    """Of several fields of points none is taken; the choice names those of cells as well."""
+    mesh = Mesh(np.eye(4, 3), [(10, [0, 1, 2, 3])], {"p": np.arange(4.0), "T": np.arange(4.0)}, {"rho": np.ones(1)})
+    path = write(tmp_path / "a.vtu", mesh)
+    with pytest.raises(OptionError) as refusal:
+        read(path)
+    assert str(refusal.value) == f"{path}: holds 2 point fields (p, T) and 1 of cells (rho); choose one with --field"
