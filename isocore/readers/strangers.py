@@ -45,7 +45,7 @@ def _vtk(kind: bytes) -> Callable[[bytes], object]:
     return _matches(rb"(<\?xml[^>]*>\s*)?(<!--.*?-->\s*)*<VTKFile[^>]*\btype\s*=\s*.%b\b" % kind)
 
 
-_SURFACE = "is a surface already, which has no isovalue; give the volume or the mesh that it was made from"
+_SURFACE = "a surface has no isovalue, so give the volume or the mesh that it was made from"
 
 STRANGERS = (
     Stranger(
