@@ -18,11 +18,11 @@ from isocore.digits import exact
 from isocore.errors import OptionError
 from isocore.labels import Label
 
-Format: TypeAlias = Literal["ply", "obj", "stl", "glb"]
+Format: TypeAlias = Literal["ply", "obj", "stl", "glb", "gii"]
 #: What surfaces are written as; the first is the default.
 FORMATS: tuple[Format, ...] = get_args(Format)
 #: Those that hold a normal for every vertex.
-SHADED_FORMATS = frozenset({"ply", "obj", "glb"})
+SHADED_FORMATS = frozenset({"ply", "obj", "glb", "gii"})
 #: Methods by name; the first is chosen by the field and by what is asked of it.
 BACKEND_NAMES = ("auto", "asc", "thinning", "mc")
 #: What the coordinates of vertices may mean; as volume.Space.

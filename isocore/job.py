@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from isocore.choices import SHADED_FORMATS, About, Choice, Format, MaxError, parse_about, parse_choice, parse_max_error
+from isocore.errors import OptionError
 from isocore.piece_sizes import MinPiece, parse_min_piece
 from isocore.readers.options import ReadOptions
-from isocore.volume import Space
+from isocore.volume import Space, Volume, to_ras
 
 #: The target that is not a file.
 STDOUT = Path("-")
@@ -108,6 +109,13 @@ class Job:
     def __post_init__(self) -> None:
         if isinstance(self.offset, str):
             object.__setattr__(self, "offset", parse_about(self.offset))
+        if self.format == "gii" and self.space in ("lps", "las"):
+            raise OptionError(f"--space {self.space}: GIFTI is in RAS; leave it out, or choose another format with -f")
+
+    def place(self, volume: Volume) -> Volume:
+        """The volume in the space that is asked for; GIFTI is in RAS where the file says which way its axes point."""
+        as_ras = self.format == "gii" and self.space == "native" and to_ras(volume.space) is not None
+        return volume.in_space("ras" if as_ras else self.space)
 
     @property
     def counts_intersections(self) -> bool:

@@ -180,7 +180,7 @@ def _read(job: Job) -> Field:
         raise InputError(job.refusal)
     source = read(job.source, job.read_options)
     if isinstance(source, Volume):
-        return source.in_space(job.space)
+        return job.place(source)
     if job.space != "native":
         raise FieldError(f"a mesh does not say which space it is in, so not {job.space} either; use --space native")
     return source

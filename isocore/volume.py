@@ -179,6 +179,11 @@ class Volume:
         return self.slope * stored + self.intercept
 
 
+def to_ras(space: Space) -> npt.NDArray[np.float64] | None:
+    """What takes coordinates of `space` to RAS, (4, 4); None where they are in RAS, or nobody knows."""
+    return None if space == "ras" or space not in _SIGNS else np.diag([*_SIGNS[space], 1.0])
+
+
 def _placed(spacing: float | Sequence[float] | None, origin: Sequence[float] | None) -> npt.NDArray[np.float64]:
     """The affine of these steps and this place. Raises OptionError for what are none."""
     affine = np.eye(4)

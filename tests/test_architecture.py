@@ -46,7 +46,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "surface": {"exchange", "volume"} | KERNELS,
     "measurements": {"surface"} | KERNELS,
     "requirements": {"measurements"},
-    "job": {"choices", "piece_sizes", "readers/options", "volume"},
+    "job": {"choices", "errors", "piece_sizes", "readers/options", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
     "readers": {"arrays", "digits", "errors", "volume", "cell_mesh"} | KERNELS,
@@ -57,7 +57,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "segmentation": {"labels", "digits", "extraction", "histogram", "isovalue", "volume"},
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
-    "writers": {"choices", "errors", "surface", "whole_file"} | KERNELS,
+    "writers": {"choices", "errors", "surface", "volume", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
     | {"digits", "writers/read_back"}
     | KERNELS,

@@ -15,6 +15,7 @@ from isocore.choices import FORMATS, Format
 from isocore.errors import OptionError, writing
 from isocore.surface import Surface
 from isocore.whole_file import whole_file
+from isocore.writers.gifti import write_gifti
 from isocore.writers.glb import write_glb
 from isocore.writers.obj import write_obj
 from isocore.writers.ply import write_ply
@@ -24,7 +25,13 @@ from isocore.writers.stl import write_stl
 Writer = Callable[[BinaryIO, Surface, int], None]
 
 #: suffix -> writer(stream, surface, threads); coordinates are rounded before (rounding.py).
-WRITERS: dict[str, Writer] = {".ply": write_ply, ".obj": write_obj, ".stl": write_stl, ".glb": write_glb}
+WRITERS: dict[str, Writer] = {
+    ".ply": write_ply,
+    ".obj": write_obj,
+    ".stl": write_stl,
+    ".glb": write_glb,
+    ".gii": write_gifti,
+}
 
 
 def write(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import re
 import struct
+from base64 import b64decode
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -81,6 +83,16 @@ def _read_glb(data: bytes) -> Mesh:
     return np.concatenate(vertices), np.concatenate(triangles)
 
 
+def _read_gifti(data: bytes) -> Mesh:
+    found: dict[bytes, npt.NDArray[Any]] = {}
+    for head, text in re.findall(rb"<DataArray ([^>]*)>.*?<Data>([^<]*)</Data>", data, re.DOTALL):
+        said = dict(re.findall(rb'(\w+)="([^"]*)"', head))
+        dtype = "<f4" if said[b"DataType"].endswith(b"FLOAT32") else "<i4"
+        found[said[b"Intent"]] = np.frombuffer(b64decode(text, validate=True), dtype)
+    vertices, triangles = (found[b"NIFTI_INTENT_" + name].reshape(-1, 3) for name in (b"POINTSET", b"TRIANGLE"))
+    return vertices, triangles.astype(np.int32)
+
+
 def _read_stl(data: bytes) -> Mesh:
     count = int(np.frombuffer(data, "<u4", 1, 80)[0])
     facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -100,6 +112,7 @@ def _read_obj(data: bytes) -> Mesh:
 
 #: suffix -> reader of a whole file's bytes: one for each of the writers.
 READ_BACK: dict[str, Callable[[bytes], Mesh]] = {
+    ".gii": _read_gifti,
     ".glb": _read_glb,
     ".obj": _read_obj,
     ".ply": _read_ply,

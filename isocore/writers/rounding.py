@@ -26,7 +26,7 @@ _SMALL_MOVE = 1e-3
 def rounded(surface: Surface, format: Format, threads: int = 1) -> tuple[Surface, tuple[str, ...]]:
     """The surface with its coordinates as `format` keeps them, and a warning where that moves vertices visibly.
 
-    PLY keeps float32 and float64, OBJ nine significant digits, STL and GLB float32. Raises OutputError where a
+    PLY keeps float32 and float64, OBJ nine significant digits, STL, GLB and GIFTI float32. Raises OutputError where a
     coordinate lies beyond what the format can say.
     """
     round_ = _ROUNDING.get(format)
@@ -61,10 +61,12 @@ def _float32(vertices: npt.NDArray[Any], threads: int) -> npt.NDArray[np.float32
 _ROUNDING: dict[str, Callable[[npt.NDArray[Any], int], npt.NDArray[Any]]] = {
     "stl": _float32,
     "glb": _float32,
+    "gii": _float32,
     "obj": _kernels.nine_digits,
 }
-_KEEPS = {"stl": "STL keeps float32 only", "glb": "GLB keeps float32 only", "obj": "OBJ keeps nine digits"}
-_INSTEAD = {"stl": "write PLY or OBJ", "glb": "write PLY or OBJ", "obj": "write PLY, which keeps float64"}
+_KEEPS = {name: f"{name.upper()} keeps float32 only" for name in ("stl", "glb")}
+_KEEPS |= {"gii": "GIFTI keeps float32 only", "obj": "OBJ keeps nine digits"}
+_INSTEAD = dict.fromkeys(("stl", "glb", "gii"), "write PLY or OBJ") | {"obj": "write PLY, which keeps float64"}
 
 
 def _loss(surface: Surface, after: npt.NDArray[Any], format: Format, threads: int) -> tuple[str, ...]:

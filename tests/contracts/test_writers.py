@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import meshio
+import nibabel
 import numpy as np
 import pytest
 import shapes_mesh
@@ -49,7 +50,7 @@ def rough_torus() -> Surface:
 @pytest.mark.parametrize("format", FORMATS)
 @pytest.mark.parametrize("normals", [False, True])
 def test_another_reader_finds_the_same_mesh(tmp_path, format, normals, rough_torus):
-    """meshio, or trimesh of GLB, sees every vertex of every triangle at its place, to the last bit of float32."""
+    """meshio, trimesh (GLB) or nibabel (GIFTI) sees every vertex at its place, to the last bit of float32."""
     surface = with_normals(rough_torus) if normals else rough_torus
     target = tmp_path / f"mesh.{format}"
     assert write(surface, target) == ()
@@ -58,6 +59,11 @@ def test_another_reader_finds_the_same_mesh(tmp_path, format, normals, rough_tor
         assert np.array_equal(np.asarray(mesh.vertices, np.float32), surface.vertices)
         assert np.array_equal(mesh.faces, surface.triangles)
         assert not normals or np.array_equal(np.asarray(mesh.vertex_normals, np.float32), surface.normals)
+        return
+    if format == "gii":
+        arrays = nibabel.load(target).agg_data()
+        assert np.array_equal(arrays[0], surface.vertices) and np.array_equal(arrays[1], surface.triangles)
+        assert len(arrays) == 2 + normals and (not normals or np.array_equal(arrays[2], surface.normals))
         return
     mesh = meshio.read(target)
     found = mesh.points.astype(np.float32)[mesh.cells_dict["triangle"]]
@@ -201,7 +207,8 @@ def test_an_empty_surface_is_a_valid_file(tmp_path, format):
     """With a header, and nothing after it."""
     write(shapes_mesh.empty(), tmp_path / f"empty.{format}")
     data = (tmp_path / f"empty.{format}").read_bytes()
-    assert {"ply": b"element face 0\n", "stl": bytes(4), "obj": b"SPACE=RAS", "glb": b'"scenes":['}[format] in data
+    sign = {"ply": b"element face 0\n", "stl": bytes(4), "obj": b"SPACE=RAS", "glb": b'"scenes":[', "gii": b'Dim0="0"'}
+    assert sign[format] in data
     assert data[80:] == bytes(4) or format != "stl"
     if format == "ply":
         assert len(meshio.read(tmp_path / "empty.ply").points) == 0
