@@ -26,20 +26,25 @@ using nearness::kLanes;
 
 constexpr std::size_t kGroupsPerTask = 64;
 
+std::size_t tasks(std::size_t groups) { return (groups + kGroupsPerTask - 1) / kGroupsPerTask; }
+
 template <class Real>
 std::vector<CornerGroup> corner_groups(const MeshView<Real>& mesh, const BoxTree& tree, int threads) {
     const Array<std::uint8_t> tidy = intersections::tidy_fans(mesh, threads);
     std::vector<CornerGroup> groups(tree.groups());
-    for (std::size_t n = 0; n < tree.order().size(); ++n) {
-        const std::int32_t* corners = mesh.triangles + 3 * static_cast<std::size_t>(tree.order()[n]);
-        CornerGroup& group = groups[n / kLanes];
-        unsigned bits = 0;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-            group.vertices[corner][n % kLanes] = corners[corner];
-            bits |= static_cast<unsigned>(tidy[static_cast<std::size_t>(corners[corner])]) << corner;
+    parallel_for(threads, tasks(groups.size()), [&](std::size_t task) {
+        const std::size_t end = std::min(tree.order().size(), kLanes * kGroupsPerTask * (task + 1));
+        for (std::size_t n = kLanes * kGroupsPerTask * task; n < end; ++n) {
+            const std::int32_t* corners = mesh.triangles + 3 * static_cast<std::size_t>(tree.order()[n]);
+            CornerGroup& group = groups[n / kLanes];
+            unsigned bits = 0;
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                group.vertices[corner][n % kLanes] = corners[corner];
+                bits |= static_cast<unsigned>(tidy[static_cast<std::size_t>(corners[corner])]) << corner;
+            }
+            group.tidy[n % kLanes] = static_cast<std::uint8_t>(bits);
         }
-        group.tidy[n % kLanes] = static_cast<std::uint8_t>(bits);
-    }
+    });
     return groups;
 }
 
@@ -121,7 +126,7 @@ std::size_t self_intersections(const MeshView<Real>& mesh, int threads) {
     const BoxTree tree(mesh, frame, threads);
     if (tree.order().empty()) return 0;
     const PairCounter<Real> counter(mesh, tree, frame.scale, threads);
-    std::vector<std::size_t> found((tree.groups() + kGroupsPerTask - 1) / kGroupsPerTask);
+    std::vector<std::size_t> found(tasks(tree.groups()));
     parallel_for(threads, found.size(), [&](std::size_t task) {
         const std::size_t end = std::min(tree.groups(), (task + 1) * kGroupsPerTask);
         for (std::size_t group = task * kGroupsPerTask; group < end; ++group) found[task] += counter.count(group);
