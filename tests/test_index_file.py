@@ -186,6 +186,7 @@ def _swapped(array: Any) -> None:
         lambda header, arrays: arrays["tets records"].__setitem__((slice(None), slice(8, 14)), 0),
         lambda header, arrays: _moved_corner(arrays),
         lambda header, arrays: arrays["tets skeleton"].__setitem__(0, -1),
+        lambda header, arrays: arrays["tets skeleton"].__setitem__(1, arrays["tets skeleton"][0]),
         lambda header, arrays: arrays["tets low"].__setitem__(0, np.nan),
         lambda header, arrays: arrays["tets high"].__setitem__(slice(None), -1e9),
         lambda header, arrays: _swapped(arrays["tets low"]),

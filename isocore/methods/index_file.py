@@ -124,12 +124,17 @@ def _index(file: BinaryIO, header: dict[str, Any], mesh: CellMesh) -> MeshIndex:
 
 
 def is_of(index: MeshIndex, mesh: CellMesh) -> bool:
-    """Whether the index has the mesh's cells, and its skeleton their values; `index` names only what is there."""
+    """Whether the index has the mesh's cells, and its skeleton their values, each cell once.
+
+    `index` names only what is there. Whether the skeleton holds enough of the cells only thinning itself could tell.
+    """
     mixed = np.arange(1, len(mesh.points) + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     mixed ^= mixed >> np.uint64(29)
     renumbered = mixed[index.original]
     for part, cells in ((index.tets, mesh.tets), (index.hexes, mesh.hexes)):
         if _sum_of(renumbered, part.records[:, : cells.shape[1]]) != _sum_of(mixed, cells):
+            return False
+        if len(np.unique(part.skeleton)) != len(part.skeleton):
             return False
     heights = np.where(np.isfinite(mesh.values), mesh.values.astype(np.float64), -np.inf)[index.original]
     return all(
