@@ -9,9 +9,11 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -158,18 +160,21 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
 ) -> None:
     """The report holds what was done until then."""
     report = tmp_path / "run.json"
-    arguments = [str(scans), "-d", str(tmp_path / "out"), *FAST, "-j", "2", "--report", str(report)]
+    arguments = [str(scans), "-d", str(tmp_path / "out"), *FAST, "-j", "2", "-v", "--report", str(report)]
     with _interruptible():
-        process = subprocess.Popen([*program("s11=hang"), "convert", *arguments], stderr=subprocess.DEVNULL)
+        process = subprocess.Popen([*program("s11=hang"), "convert", *arguments], stderr=subprocess.PIPE, text=True)
+    watch = threading.Timer(60, process.kill)
+    watch.start()
     try:
-        for _ in _polling(60):
-            if report.exists() and len(outputs(report)) == 11:
-                break
+        assert process.stderr is not None
+        said = (line for line in process.stderr if ": done, " in line)
+        assert len(list(islice(said, 11))) == 11  # a line comes after its record is kept
         process.send_signal(getattr(signal, name))
         assert process.wait(30) == code
     finally:
+        watch.cancel()
         process.kill()
-        process.wait(10)
+        process.communicate(timeout=10)
     assert len(outputs(report)) == 11 and len(contents(tmp_path / "out")) == 11
 
 
@@ -177,21 +182,15 @@ def test_an_interrupted_run_leaves_a_report_and_no_partial_file(
 def _interruptible() -> Iterator[None]:
     """Children started here can be interrupted, also where the tests run in the background of a script.
 
-    Such a shell has its jobs ignore SIGINT, and whoever is started ignoring a signal goes on ignoring it.
+    Such a shell has its jobs ignore SIGINT, nohup SIGHUP, and whoever is started ignoring a signal goes on ignoring it.
     """
-    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    usual = {"SIGINT": signal.default_int_handler, "SIGHUP": signal.SIG_DFL}
+    before = {name: signal.signal(getattr(signal, name), to) for name, to in usual.items() if hasattr(signal, name)}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, previous)
-
-
-def _polling(seconds: float) -> Iterator[None]:
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        yield
-        time.sleep(0.05)
-    raise AssertionError(f"nothing happened within {seconds} s")
+        for name, handler in before.items():
+            signal.signal(getattr(signal, name), handler)
 
 
 def test_only_our_own_leftovers_are_removed(tmp_path: Path) -> None:

@@ -43,6 +43,11 @@ def closing(*numbers: int) -> Any:
     return close
 
 
+def heeding() -> None:
+    """Has a program end at SIGHUP, also where the tests are run by nohup."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 TO_STDOUT = [
     ("--help",),
     ("--version",),
@@ -190,7 +195,7 @@ def test_a_program_that_is_to_outlive_its_terminal_does(here: Path) -> None:
     ignoring = run(here, *arguments, patch=patch, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     assert ignoring.returncode == 0 and (here / "out" / "a.ply").exists()
     (here / "out" / "a.ply").unlink()
-    made = run(here, *arguments, patch=patch)
+    made = run(here, *arguments, patch=patch, preexec_fn=heeding)
     assert made.returncode == 129 and made.stderr == "isocore: hung up\n" and not (here / "out" / "a.ply").exists()
 
 
@@ -205,7 +210,8 @@ def test_signals_that_come_twice_do_not_disturb_the_cleaning_up(here: Path) -> N
         "    finally: os.kill(os.getpid(), signal.SIGTERM); os.kill(os.getpid(), signal.SIGHUP)\n"
         "WRITERS['.ply'] = write"
     )
-    made = run(here, "convert", "a.nii", "-i", 50, "-d", "out", "-q", "--report", "s.json", patch=patch)
+    arguments = ("convert", "a.nii", "-i", 50, "-d", "out", "-q", "--report", "s.json")
+    made = run(here, *arguments, patch=patch, preexec_fn=heeding)
     assert made.returncode == 129 and made.stderr == "isocore: hung up\n"
     assert list((here / "out").iterdir()) == [] and json.loads((here / "s.json").read_text())["outputs"] == []
 
