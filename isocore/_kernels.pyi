@@ -152,7 +152,7 @@ class Shells(NamedTuple):
     areas: _Float64
     volumes: _Float64  # signed; means something only where closed
     closed: _Bytes  # 1 or 0
-    around: _Int32  # the smallest closed shell around it, or -1
+    around: _Int32  # the smallest closed shell around it that faces the other way, or -1
     piece: _Int32  # the outer shell of its piece: itself, unless it is a bubble
 
 def shells(vertices: _Real, triangles: _Int32, threads: int = 1) -> Shells: ...

@@ -201,6 +201,7 @@ def _part(surface: Surface, of_vertex: npt.NDArray[np.int32], kept: _Mask) -> Su
     """Those shells alone, vertices and triangles in their order; vertices that no triangle uses go."""
     stays = np.append(kept, False)[of_vertex]
     number = np.cumsum(stays, dtype=np.int32) - 1
-    triangles = number[surface.triangles[stays[surface.triangles[:, 0]]]]
+    a, b, c = (stays[surface.triangles[:, corner]] for corner in range(3))
+    triangles = number[surface.triangles[a & b & c]]
     normals = None if surface.normals is None else surface.normals[stays]
     return replace(surface, vertices=surface.vertices[stays], triangles=triangles, normals=normals)

@@ -79,10 +79,10 @@ def assert_nests(mesh: Mesh) -> int:
             touching = (points[:, None] == mesh[0][of_vertex == outer][None]).all(2).any(1)
             numbers = winding(mesh, parts[outer], points[~touching])
             np.testing.assert_allclose(numbers, np.full(len(numbers), round(float(numbers[0]))), atol=1e-5)
-            if round(float(numbers[0])):
+            if round(float(numbers[0])) and (volumes[outer] < 0) != (volumes[inner] < 0):
                 around.append((abs(volumes[outer]), outer))
         parent = min(around)[1] if around else -1
-        is_bubble = volumes[inner] < 0 and parent >= 0 and volumes[parent] > 0
+        is_bubble = volumes[inner] < 0 and parent >= 0
         assert found.around[inner] == parent
         assert found.piece[inner] == (parent if is_bubble else inner)
         bubbles += is_bubble

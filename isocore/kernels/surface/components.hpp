@@ -34,6 +34,9 @@ class Components {
         return true;
     }
 
+    // Are two known to be of one component, without a search? Most that were joined are.
+    bool are_close(std::int32_t a, std::int32_t b) { return at(a) == at(b); }
+
     // The earliest vertex of its component. Path splitting: every step shortens the path of later searches.
     std::int32_t root_of(std::int32_t v) {
         std::int32_t parent = at(v);

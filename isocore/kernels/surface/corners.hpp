@@ -3,6 +3,7 @@
 // has windows of its own. Which triangles reach into a window is known from the range of each block of triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,11 @@ using Link = std::vector<LinkEdge<std::int32_t>>;
 
 // Offset: std::int16_t where no block's range exceeds `kShortRange`, else std::int32_t.
 constexpr std::int32_t kShortRange = 32767;
+inline bool has_short_ranges(const std::vector<VertexRange>& blocks) {
+    const auto is_short = [](VertexRange range) { return range.highest - range.lowest <= kShortRange; };
+    return std::all_of(blocks.begin(), blocks.end(), is_short);
+}
+
 template <class Offset>
 class Corners {
   public:

@@ -127,11 +127,6 @@ Topology inspect_vertices(const MeshView<Real>& mesh, const std::vector<VertexRa
     return sum;
 }
 
-bool has_short_ranges(const std::vector<VertexRange>& ranges) {
-    const auto is_short = [](VertexRange range) { return range.highest - range.lowest <= kShortRange; };
-    return std::all_of(ranges.begin(), ranges.end(), is_short);
-}
-
 }  // namespace
 
 template <class Real>

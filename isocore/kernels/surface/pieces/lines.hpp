@@ -33,11 +33,13 @@ inline int passage(const Corner3& corners, const Point& p, std::size_t axis) {
 }
 
 // Points, to be found by their places across an axis: in strips of equally many along the next axis, sorted along the
-// third within each, so that crowds of them cost no more than what is spread out.
+// third within each, so that crowds of them cost little more than what is spread out. Tables of equal steps say where
+// to begin.
 class Lines {
   public:
     Lines(const std::vector<Point>& points, std::size_t axis)
         : next_((axis + 1) % 3), third_((axis + 2) % 3), order_(points.size()), points_(points) {
+        if (points.empty()) return;
         for (std::size_t n = 0; n < order_.size(); ++n) order_[n] = static_cast<std::uint32_t>(n);
         sort_by(next_, 0, order_.size());
         strip_ = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(order_.size()))));
@@ -48,28 +50,64 @@ class Lines {
             sort_by(third_, begin, end);
         }
         for (const std::uint32_t n : order_) places_.push_back(points_[n][third_]);
+        strips_ = Steps(lowest_.front(), highest_.back(), 4 * lowest_.size());
+        strips_.fill(highest_, 0, highest_.size());
+        const auto [low, high] = std::minmax_element(places_.begin(), places_.end());
+        for (std::size_t begin = 0; begin < order_.size(); begin += strip_) {
+            starts_.emplace_back(*low, *high, 2 * strip_);
+            starts_.back().fill(places_, begin, std::min(begin + strip_, order_.size()));
+        }
     }
 
     // Calls found(n) for every point whose line meets the box around the corners.
     template <class Found>
     void for_each(const Corner3& corners, const Found& found) const {
+        if (order_.empty()) return;
         const auto [low, high] = ends(corners, next_);
+        if (low > highest_.back() || high < lowest_.front()) return;
         const auto [third_low, third_high] = ends(corners, third_);
-        const auto first = std::lower_bound(highest_.begin(), highest_.end(), low) - highest_.begin();
-        for (auto strip = static_cast<std::size_t>(first); strip < lowest_.size() && lowest_[strip] <= high; ++strip) {
-            const auto begin = places_.begin() + static_cast<std::ptrdiff_t>(strip * strip_);
-            const auto end =
-                places_.begin() + static_cast<std::ptrdiff_t>(std::min((strip + 1) * strip_, places_.size()));
-            for (auto at = std::lower_bound(begin, end, third_low); at != end && *at <= third_high; ++at) {
-                const std::uint32_t n = order_[static_cast<std::size_t>(at - places_.begin())];
-                if (low <= points_[n][next_] && points_[n][next_] <= high) found(n);
+        for (std::size_t strip = strips_.at(low); strip < lowest_.size() && lowest_[strip] <= high; ++strip) {
+            if (highest_[strip] < low) continue;
+            const std::size_t end = std::min((strip + 1) * strip_, places_.size());
+            for (std::size_t at = starts_[strip].at(third_low); at < end && places_[at] <= third_high; ++at) {
+                const double place = points_[order_[at]][next_];
+                if (places_[at] >= third_low && low <= place && place <= high) found(order_[at]);
             }
         }
     }
 
   private:
+    // Of ascending numbers, one that is not behind the first that reaches a given one: by a table of equal steps.
+    class Steps {
+      public:
+        Steps() = default;
+        Steps(double low, double high, std::size_t count)
+            : low_(low), scale_(high > low ? static_cast<double>(count) / (high - low) : 0), table_(count + 1) {}
+
+        void fill(const std::vector<double>& numbers, std::size_t begin, std::size_t end) {
+            std::size_t at = begin;
+            for (std::size_t step = 0; step < table_.size(); ++step) {
+                while (at < end && step_of(numbers[at]) < step) ++at;
+                table_[step] = static_cast<std::uint32_t>(at);
+            }
+        }
+
+        std::size_t at(double number) const { return table_[step_of(number)]; }
+
+      private:
+        // Never falls where numbers rise, which is all that is asked of it.
+        std::size_t step_of(double number) const {
+            const double step = (number - low_) * scale_;
+            return step > 0 ? static_cast<std::size_t>(std::min(step, static_cast<double>(table_.size() - 1))) : 0;
+        }
+
+        double low_ = 0, scale_ = 0;
+        std::vector<std::uint32_t> table_;
+    };
+
     static std::pair<double, double> ends(const Corner3& corners, std::size_t axis) {
-        return std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+        const double a = corners[0][axis], b = corners[1][axis], c = corners[2][axis];
+        return {std::min(std::min(a, b), c), std::max(std::max(a, b), c)};
     }
 
     void sort_by(std::size_t axis, std::size_t begin, std::size_t end) {
@@ -82,6 +120,8 @@ class Lines {
     std::vector<std::uint32_t> order_;      // points, strip by strip
     std::vector<double> lowest_, highest_;  // of each strip, along the next axis
     std::vector<double> places_;            // along the third axis, in that order
+    Steps strips_;
+    std::vector<Steps> starts_;  // of each strip
     const std::vector<Point>& points_;
 };
 

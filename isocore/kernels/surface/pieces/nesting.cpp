@@ -18,8 +18,11 @@ namespace {
 constexpr std::size_t kBlock = 16384;  // triangles
 constexpr int kRounds = 8;
 
-// Vertices of shells that are asked about.
+bool is_inward(const Shell& shell) { return shell.closed && shell.volume < 0; }
+
+// Vertices of shells that are asked about, all of which face the same way; those around them face the other way.
 struct Asked {
+    bool inward;
     std::vector<std::int32_t> shells;
     std::vector<Point> points;
 };
@@ -53,15 +56,14 @@ struct Sweep {
 
 template <class Real>
 Sweep swept(const MeshView<Real>& mesh, const Shells& shells, const Asked& asked, const Lines& lines,
-            std::size_t block) {
+            const std::vector<std::uint8_t>& is_other, std::size_t block) {
     Sweep found;
     const std::size_t end = std::min(mesh.triangle_count, (block + 1) * kBlock);
     for (std::size_t t = block * kBlock; t < end; ++t) {
         const std::int32_t shell = shell_of(mesh, shells, t);
-        if (!at(shells, shell).closed) continue;
+        if (shell < 0 || is_other[static_cast<std::size_t>(shell)] == 0) continue;
         const Corner3 corners = corners_of(mesh, t);
         lines.for_each(corners, [&](std::uint32_t n) {
-            if (asked.shells[n] == shell) return;
             const Point& p = asked.points[n];
             if (p == corners[0] || p == corners[1] || p == corners[2]) found.touched.push_back(n);
             const int way = passage(corners, p, 0);
@@ -78,8 +80,11 @@ template <class Real>
 Sweep swept(const MeshView<Real>& mesh, const Shells& shells, const Asked& asked, int threads) {
     const Lines lines(asked.points, 0);
     const std::size_t blocks = (mesh.triangle_count + kBlock - 1) / kBlock;
+    std::vector<std::uint8_t> is_other;  // of each shell: may it be around those asked about?
+    for (const Shell& shell : shells.shells) is_other.push_back(shell.closed && is_inward(shell) != asked.inward);
     std::vector<Sweep> parts(blocks);
-    parallel_for(threads, blocks, [&](std::size_t block) { parts[block] = swept(mesh, shells, asked, lines, block); });
+    parallel_for(threads, blocks,
+                 [&](std::size_t block) { parts[block] = swept(mesh, shells, asked, lines, is_other, block); });
     Sweep all;
     for (const Sweep& part : parts) {
         all.passages.insert(all.passages.end(), part.passages.begin(), part.passages.end());
@@ -107,13 +112,24 @@ void take_smallest(const Sweep& sweep, const Asked& asked, const Shells& shells,
     }
 }
 
+template <class Real>
+Asked first_asked(const MeshView<Real>& mesh, const Shells& shells, bool inward) {
+    Asked asked{inward, {}, {}};
+    for (std::size_t n = 0; n < shells.shells.size(); ++n) {
+        if (is_inward(shells.shells[n]) != inward) continue;
+        asked.shells.push_back(static_cast<std::int32_t>(n));
+        asked.points.push_back(mesh.vertex(shells.shells[n].first));
+    }
+    return asked;
+}
+
 // The next vertices of the shells whose vertices touched another one.
 template <class Real>
 Asked asked_again(const MeshView<Real>& mesh, const Shells& shells, const Asked& asked,
                   const std::vector<std::uint32_t>& touched, int round) {
     std::vector<int> left(shells.shells.size(), 0);  // vertices to be passed over, and one
     for (const std::uint32_t n : touched) left[static_cast<std::size_t>(asked.shells[n])] = round + 2;
-    Asked next;
+    Asked next{asked.inward, {}, {}};
     for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
         const std::int32_t shell = shells.of_vertex[v];
         if (shell < 0 || left[static_cast<std::size_t>(shell)] == 0) continue;
@@ -136,7 +152,7 @@ class Facing {
         const Lines lines(asked.points, axis);
         for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
             const std::int32_t shell = shell_of(mesh, shells, t);
-            if (at(shells, shell).closed) continue;
+            if (shell < 0 || at(shells, shell).closed) continue;
             const Corner3 corners = corners_of(mesh, t);
             lines.for_each(corners, [&](std::uint32_t n) {
                 const int way = passage(corners, asked.points[n], axis);
@@ -167,12 +183,12 @@ class Facing {
 // Gives the bubbles of open shells to them.
 template <class Real>
 void join_open(const MeshView<Real>& mesh, const Shells& shells, Nesting& nesting) {
-    Asked asked;
+    Asked asked{true, {}, {}};
     bool any_open = false;
     for (std::size_t n = 0; n < shells.shells.size(); ++n) {
         const Shell& shell = shells.shells[n];
         any_open = any_open || !shell.closed;
-        if (!shell.closed || !(shell.volume < 0) || nesting.around[n] >= 0) continue;
+        if (!is_inward(shell) || nesting.around[n] >= 0) continue;
         asked.shells.push_back(static_cast<std::int32_t>(n));
         asked.points.push_back(mesh.vertex(shell.first));
     }
@@ -195,21 +211,18 @@ Nesting nesting_of(const MeshView<Real>& mesh, const Shells& shells, int threads
     nesting.around.assign(count, -1);
     nesting.piece.resize(count);
     std::iota(nesting.piece.begin(), nesting.piece.end(), 0);
-    if (count < 2) return nesting;
-    Asked asked;
-    for (std::size_t n = 0; n < count; ++n) {
-        asked.shells.push_back(static_cast<std::int32_t>(n));
-        asked.points.push_back(mesh.vertex(shells.shells[n].first));
+    const auto inward = std::count_if(shells.shells.begin(), shells.shells.end(), is_inward);
+    if (inward == 0) return nesting;
+    for (const bool way : {true, false}) {
+        Asked asked = first_asked(mesh, shells, way);
+        for (int round = 0; round < kRounds && !asked.shells.empty(); ++round) {
+            const Sweep sweep = swept(mesh, shells, asked, threads);
+            take_smallest(sweep, asked, shells, nesting);
+            asked = asked_again(mesh, shells, asked, sweep.touched, round);
+        }
     }
-    for (int round = 0; round < kRounds && !asked.shells.empty(); ++round) {
-        const Sweep sweep = swept(mesh, shells, asked, threads);
-        take_smallest(sweep, asked, shells, nesting);
-        asked = asked_again(mesh, shells, asked, sweep.touched, round);
-    }
     for (std::size_t n = 0; n < count; ++n) {
-        const std::int32_t outer = nesting.around[n];
-        const bool bubble = shells.shells[n].closed && shells.shells[n].volume < 0 && outer >= 0;
-        if (bubble && at(shells, outer).volume > 0) nesting.piece[n] = outer;
+        if (is_inward(shells.shells[n]) && nesting.around[n] >= 0) nesting.piece[n] = nesting.around[n];
     }
     join_open(mesh, shells, nesting);
     return nesting;

@@ -10,8 +10,9 @@
 namespace isocore {
 
 struct Nesting {
-    Array<std::int32_t> around;  // of each shell, the smallest closed one around it; -1 where there is none
-    Array<std::int32_t> piece;   // of each shell, the outer shell of its piece: itself, unless it is a bubble
+    // Of each shell, the smallest closed one around it that faces the other way; -1 where there is none.
+    Array<std::int32_t> around;
+    Array<std::int32_t> piece;  // of each shell, the outer shell of its piece: itself, unless it is a bubble
 };
 
 // mesh: that of which `shells` are; shells that pass through each other are nested by their first vertices. The result

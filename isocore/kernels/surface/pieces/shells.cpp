@@ -1,9 +1,11 @@
-// shells.cpp - Vertices are joined along triangles; then two sweeps, over vertices for what is open, over triangles for
-// what adds up.
+// shells.cpp - Two sweeps, as in measure.cpp: over vertices for what hangs together and what is open, from their links,
+// and over triangles for what adds up.
 #include "surface/pieces/shells.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "common/parallel.hpp"
 #include "surface/components.hpp"
@@ -13,32 +15,6 @@
 
 namespace isocore {
 namespace {
-
-// Numbers the shells by their first vertices.
-template <class Real>
-Shells numbered(const MeshView<Real>& mesh) {
-    Components components(mesh.vertex_count);
-    components.start(0, mesh.vertex_count);
-    Shells found;
-    found.of_vertex.assign(mesh.vertex_count, -1);
-    for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
-        const std::int32_t* corners = mesh.triangles + 3 * t;
-        components.join({corners[0], corners[1]});
-        components.join({corners[0], corners[2]});
-        for (std::size_t n = 0; n < 3; ++n) found.of_vertex[static_cast<std::size_t>(corners[n])] = 0;
-    }
-    for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
-        if (found.of_vertex[v] < 0) continue;
-        const std::int32_t root = components.root_of(static_cast<std::int32_t>(v));
-        if (static_cast<std::size_t>(root) == v) {
-            found.of_vertex[v] = static_cast<std::int32_t>(found.shells.size());
-            found.shells.push_back({.first = root});
-        } else {
-            found.of_vertex[v] = found.of_vertex[static_cast<std::size_t>(root)];  // the root is earlier
-        }
-    }
-    return found;
-}
 
 // Does some edge at a vertex have more triangles one way than the other? uses: scratch memory.
 bool has_loose_edge(const Link& link, std::vector<std::pair<std::int32_t, int>>& uses) {
@@ -56,31 +32,88 @@ bool has_loose_edge(const Link& link, std::vector<std::pair<std::int32_t, int>>&
     return false;
 }
 
-template <class Real>
-void find_open(const MeshView<Real>& mesh, int threads, Shells& found) {
-    const std::vector<VertexRange> ranges = ranges_of(mesh, threads);
+// What one window of vertices has to say.
+struct Window {
+    std::vector<std::size_t> loose;        // vertices with a loose edge
+    std::vector<Components::Pair> across;  // to be joined with a vertex of an earlier window
+};
+
+// Joins every vertex of a window with its earlier neighbours. used: 0 for those that have a triangle, else -1.
+template <class Offset>
+Window look_through(const Corners<Offset>& corners, std::size_t begin, std::size_t end, Components& components,
+                    Array<std::int32_t>& used) {
+    Window found;
+    Link link;
+    std::vector<std::pair<std::int32_t, int>> uses;
+    for (std::size_t v = begin; v < end; ++v) {
+        const auto self = static_cast<std::int32_t>(v);
+        const auto join = [&](std::int32_t offset) {
+            const bool is_here = self + offset >= static_cast<std::int32_t>(begin);
+            if (is_here && !components.are_close(self, self + offset)) components.join({self, self + offset});
+            if (!is_here) found.across.emplace_back(self, self + offset);
+        };
+        const std::size_t degree = corners.count(v);
+        used[v] = degree == 0 ? -1 : 0;
+        if (degree == 0) continue;
+        const Slots<Offset>& slots = corners.slots(v);
+        if (is_plain_ring(slots, degree)) {  // neighbours that follow each other in the ring share an edge themselves
+            for (std::uint32_t runs = starts_of_earlier_runs(slots, degree); runs != 0; runs &= runs - 1) {
+                join(slots.edges[static_cast<std::size_t>(std::countr_zero(runs))].to);
+            }
+            continue;
+        }
+        corners.copy_link(v, link);
+        for (const auto& edge : link) {
+            if (edge.from < 0) join(edge.from);
+            if (edge.to < 0) join(edge.to);
+        }
+        if (has_loose_edge(link, uses)) found.loose.push_back(v);
+    }
+    return found;
+}
+
+// Gives every vertex that is used its shell, by first vertices.
+void number(Components& components, Shells& found) {
+    for (std::size_t v = 0; v < found.of_vertex.size(); ++v) {
+        if (found.of_vertex[v] < 0) continue;
+        const std::int32_t root = components.root_of(static_cast<std::int32_t>(v));
+        if (static_cast<std::size_t>(root) == v) {
+            found.of_vertex[v] = static_cast<std::int32_t>(found.shells.size());
+            found.shells.push_back({.first = root});
+        } else {
+            found.of_vertex[v] = found.of_vertex[static_cast<std::size_t>(root)];  // the root is earlier
+        }
+    }
+}
+
+template <class Offset, class Real>
+Shells joined(const MeshView<Real>& mesh, const std::vector<VertexRange>& ranges, int threads) {
     const std::size_t size = window_size(ranges, mesh.vertex_count, threads);
     const std::size_t count = (mesh.vertex_count + size - 1) / size;
     const std::size_t workers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-    std::vector<std::vector<std::size_t>> loose(count);  // vertices, by window
+    Components components(mesh.vertex_count);
+    Shells found;
+    found.of_vertex.resize(mesh.vertex_count);
+    std::vector<Window> windows(count);
     parallel_for(threads, workers, [&](std::size_t worker) {
-        Corners<std::int32_t> corners(mesh.triangles, mesh.triangle_count, ranges);
-        Link link;
-        std::vector<std::pair<std::int32_t, int>> uses;
+        Corners<Offset> corners(mesh.triangles, mesh.triangle_count, ranges);
         for (std::size_t window = worker; window < count; window += workers) {
             const std::size_t begin = window * size, end = std::min(mesh.vertex_count, begin + size);
+            components.start(begin, end);
             corners.look_at(begin, end);
-            for (std::size_t v = begin; v < end; ++v) {
-                const std::size_t degree = corners.count(v);
-                if (degree == 0 || is_plain_ring(corners.slots(v), degree)) continue;
-                corners.copy_link(v, link);
-                if (has_loose_edge(link, uses)) loose[window].push_back(v);
-            }
+            windows[window] = look_through(corners, begin, end, components, found.of_vertex);
         }
     });
-    for (const auto& window : loose) {
-        for (const std::size_t v : window) found.shells[static_cast<std::size_t>(found.of_vertex[v])].closed = false;
+    for (const Window& window : windows) {
+        for (const Components::Pair& pair : window.across) components.join(pair);
     }
+    number(components, found);
+    for (const Window& window : windows) {
+        for (const std::size_t v : window.loose) {
+            found.shells[static_cast<std::size_t>(found.of_vertex[v])].closed = false;
+        }
+    }
+    return found;
 }
 
 // Volumes are those of tetrahedra at the shell's first vertex, so that digits are not lost far from the origin.
@@ -88,8 +121,9 @@ template <class Real>
 void add_up(const MeshView<Real>& mesh, Shells& found) {
     for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
         const std::int32_t* corners = mesh.triangles + 3 * t;
-        const auto number = static_cast<std::size_t>(found.of_vertex[static_cast<std::size_t>(corners[0])]);
-        Shell& shell = found.shells[number];
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
+        const std::int32_t number = found.of_vertex[static_cast<std::size_t>(corners[0])];
+        Shell& shell = found.shells[static_cast<std::size_t>(number)];
         const Vec3 normal = doubled_area(mesh, corners);
         shell.triangles += 1;
         shell.area += std::sqrt(dot(normal, normal)) / 2;
@@ -101,14 +135,9 @@ void add_up(const MeshView<Real>& mesh, Shells& found) {
 
 template <class Real>
 Shells shells_of(const MeshView<Real>& mesh, int threads) {
-    check_indices(mesh.triangles, mesh.triangle_count, mesh.vertex_count);
-    if (mesh.triangle_count == 0) {
-        Shells none;
-        none.of_vertex.assign(mesh.vertex_count, -1);
-        return none;
-    }
-    Shells found = numbered(mesh);
-    find_open(mesh, threads, found);
+    const std::vector<VertexRange> ranges = ranges_of(mesh, threads);  // checks what triangles name
+    Shells found = has_short_ranges(ranges) ? joined<std::int16_t>(mesh, ranges, threads)
+                                            : joined<std::int32_t>(mesh, ranges, threads);
     add_up(mesh, found);
     return found;
 }

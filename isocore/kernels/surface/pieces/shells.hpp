@@ -21,10 +21,11 @@ struct Shell {
 
 struct Shells {
     std::vector<Shell> shells;      // in the order of their first vertices
-    Array<std::int32_t> of_vertex;  // the number of its shell; -1 for a vertex that no triangle uses
+    Array<std::int32_t> of_vertex;  // the number of its shell; -1 where no triangle uses it
 };
 
-// Throws std::invalid_argument if a triangle names a vertex that is not there.
+// Triangles with a repeated corner take part in nothing. Throws std::invalid_argument if a triangle names a vertex that
+// is not there.
 template <class Real>
 Shells shells_of(const MeshView<Real>& mesh, int threads);
 
