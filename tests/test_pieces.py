@@ -294,7 +294,7 @@ def test_stamps_count_what_is_asked_of_pieces(tmp_path: Path) -> None:
     path = write_nifti(tmp_path / "boxes.nii", boxes(2, 5, 3))
     asked = ((), ("--keep-largest", 1), ("--keep-largest", 2), ("--min-piece", 50), ("--min-piece", "20mm3"))
     for more in (*asked, ("--fill-bubbles",)):
-        statuses = [record(tmp_path, path, "--if-changed", *more)["status"] for _ in range(2)]
+        statuses = [record(tmp_path, path, "-b", "mc", "--if-changed", *more)["status"] for _ in range(2)]
         assert statuses == ["done", "skipped"], more
 
 
