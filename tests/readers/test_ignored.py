@@ -61,7 +61,7 @@ def test_an_ignored_sample_is_as_nan(dtype: str, fill: float, becomes: str, back
     wanted = extract(Volume(np.asfortranarray(with_nan)), 50.0, backend=backend, options=Options(cap=cap))
     volume = without_ignored(Volume(samples.copy(order="F")), [fill])
     found = extract(volume, 50.0, backend=backend, options=Options(cap=cap))
-    assert volume.samples.dtype == becomes and len(found.triangles) > 100
+    assert volume.samples.dtype == becomes and len(found.triangles) > 50
     assert np.array_equal(found.vertices, wanted.vertices) and np.array_equal(found.triangles, wanted.triangles)
     assert volume.ignored == np.count_nonzero(samples == samples[0, 0, 0]) and not volume.warnings
 
