@@ -42,11 +42,12 @@ def columns_of(
 def set_table(columns: Sequence[Column], rows: Sequence[Sequence[str]], width: int | None = None) -> list[str]:
     """The lines of a table, headings first, none wider than width as far as that can be; None is as wide as it takes.
 
-    A cell that is a number is never cut and never broken.
+    A cell that is a number is never cut and never broken. Columns without a word leave before all others.
     """
     cells = [[printable(cell) for cell in row] for row in rows]
     kept = list(range(len(columns)))
-    for leaving in sorted((n for n in kept if columns[n].leaves), key=lambda n: columns[n].leaves):
+    empty = [not any(row[n] for row in cells) for n in kept]
+    for leaving in sorted((n for n in kept if columns[n].leaves), key=lambda n: (not empty[n], columns[n].leaves)):
         if width is None or _fits(columns, cells, kept, width, _SHORT_NAME):
             break
         kept.remove(leaving)

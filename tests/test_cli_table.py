@@ -63,6 +63,14 @@ def test_columns_leave_by_their_place_and_the_last_ones_stay() -> None:
     assert shown[-1].split() == " ".join(HEADINGS).split()
 
 
+def test_a_column_that_says_nothing_leaves_first() -> None:
+    """Without a reference there is nothing to compare with, and the seconds keep their place."""
+    alone = record("a_name_of_some_length_for_a_surface.ply")
+    del alone["reference"], alone["ratio"]
+    heading = set_table(COLUMNS, summary_rows(BatchReport((run_from_dict(alone),))), 80)[0]
+    assert "seconds" in heading and "watertight" in heading and "ratio" not in heading and "reference" not in heading
+
+
 def test_the_readmes_table_fits_80_columns() -> None:
     """With everything but the reference's seconds."""
     heading, line = set_table(COLUMNS, summary_rows(batch("head_150.stl")), 80)

@@ -13,7 +13,8 @@ from records import SURFACE
 from small_files import ball, write_nifti
 
 from isocore.report.keys import run_from_dict
-from isocore.report.record import RunReport
+from isocore.report.record import BatchReport, RunReport
+from isocore.report.render_github import github_annotations
 
 
 def run(*arguments: object) -> Result:
@@ -77,6 +78,12 @@ def test_what_is_up_to_date_is_not_warned_about_again(tmp_path: Path) -> None:
     write_nifti(tmp_path / "in" / "s0.nii", ball(6, radius=3.5))
     (line,) = warnings(run(*arguments))
     assert "s0.nii: the surface is open" in line
+
+
+def test_github_is_not_told_old_warnings() -> None:
+    """Of what was skipped."""
+    made, skipped = (a_run("a.nii", "no orientation", status=status) for status in ("done", "skipped"))
+    assert len(github_annotations(BatchReport((made, skipped)))) == 1
 
 
 def a_run(source: str, *texts: str, output: str = "", **others: object) -> RunReport:

@@ -6,7 +6,7 @@ from isocore.report.record import BatchReport
 
 
 def github_annotations(batch: BatchReport) -> list[str]:
-    """One workflow command per failure, missed requirement, empty surface and warning."""
+    """One workflow command per failure, missed requirement, empty surface and warning, but for old warnings."""
     lines = []
     for run in batch.outputs:
         place = f"file={_property(run.source)}"
@@ -16,7 +16,8 @@ def github_annotations(batch: BatchReport) -> list[str]:
         if run.is_empty:
             why = run.message if run.status == "empty" else "the surface is empty"
             lines.append(f"::warning {place},title=isocore empty::{_data(f'{run.output}: {why}')}")
-        lines += [f"::warning {place},title=isocore::{_data(warning)}" for warning in run.warnings]
+        if run.status != "skipped":  # the run that made the output has said them
+            lines += [f"::warning {place},title=isocore::{_data(warning)}" for warning in run.warnings]
     return lines
 
 
