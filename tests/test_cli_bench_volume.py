@@ -42,6 +42,9 @@ def test_a_volume_gives_the_papers_table_and_plot(tmp_path: Path) -> None:
     assert float(rows[0]["mc / asc"]) == 1
     for row in rows:
         assert row["max error"] == "none" or float(row["error max"]) <= float(row["max error"])
+        assert row["max error"] == "none" or float(row["simplified back"]) <= float(row["max error"])
+        assert row["max error"] == "none" or int(row["simplified"]) < int(row["triangles"])
+        assert (row["max error"] == "none") == (row["mc simplified"] == "-")
     assert files["markdown"].read_text().count("\n|") == len(rows) + 2
     drawn = ET.fromstring(files["plot"].read_text())
     assert drawn.tag.endswith("svg") and len(drawn.findall("{*}polyline")) == 2

@@ -1,7 +1,8 @@
 """The table of the climbing paper for the user's own volume: triangles, time and error by block size and error bound.
 
 Poston, Wong, Heng, Computer Graphics Forum 17(3), 1998, section 5 compares block sizes with marching cubes; we add what
-an error bound costs, and the error as it was measured.
+an error bound costs, the error as it was measured, and what simplification makes of it within the same bound: from
+climbing's mesh and from marching cubes', since section 6 has the coarse mesh as the better start.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from isocore.volume import Volume
 
 #: Max, mean and rms, in voxels.
 Deviation: TypeAlias = tuple[float, float, float]
+Row: TypeAlias = tuple[str | int | float, ...]
 Found = TypeVar("Found")
 
 MAX_ERRORS = ("none", "1", "0.5", "0.25", "0.1")
@@ -37,19 +39,52 @@ _COLUMNS = (
     "error max",
     "error mean",
     "error rms",
+    "simplified",
+    "simplified seconds",
+    "simplified max",
+    "simplified back",
+    "mc simplified",
+    "mc simplified seconds",
 )
-_LEAVING = ("error rms", "error mean", "asc / mc", "mc / asc", "seconds")
+_LEAVING = (
+    "mc simplified seconds",
+    "mc simplified",
+    "error rms",
+    "error mean",
+    "simplified back",
+    "simplified max",
+    "simplified seconds",
+    "asc / mc",
+    "mc / asc",
+    "seconds",
+    "simplified",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Simplified:
+    """What simplification leaves within a bound; seconds: with those of the mesh that it starts from; both errors."""
+
+    triangles: int
+    seconds: float
+    error_max: float
+    back_max: float
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One way to draw the surface. seconds: the median; error: max, mean and rms in voxels."""
+    """One way to draw the surface. seconds: the median; error: max, mean and rms in voxels.
+
+    simplified: within the same bound, from this mesh, and from marching cubes'; None without a bound.
+    """
 
     block_size: int
     max_error: str
     triangles: int
     seconds: float
     error: Deviation
+    simplified: Simplified | None = None
+    mc_simplified: Simplified | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +102,15 @@ class ClimbingBench:
         title = f"Isovalue {exact(self.isovalue)}: {cubes}"
         return Table(title, _COLUMNS, tuple(self._row(run) for run in self.runs), _LEAVING)
 
-    def _row(self, run: Run) -> tuple[str | int | float, ...]:
+    def _row(self, run: Run) -> Row:
         fewer, slower = self.mc_triangles / max(run.triangles, 1), run.seconds / self.mc_seconds
         figures = (round(x, 4) for x in (run.seconds, slower, *run.error))
-        return (run.block_size, run.max_error, run.triangles, round(fewer, 2), *figures)
+        own: Row = (run.block_size, run.max_error, run.triangles, round(fewer, 2), *figures)
+        if run.simplified is None or run.mc_simplified is None:
+            return (*own, *("-",) * 6)
+        here, there = run.simplified, run.mc_simplified
+        errors = (round(here.error_max, 4), round(here.back_max, 4))
+        return (*own, here.triangles, round(here.seconds, 4), *errors, there.triangles, round(there.seconds, 4))
 
 
 def volume_bench(
@@ -97,6 +137,17 @@ def volume_bench(
         )
         return len(climbed.triangles), climbed.facts.error_voxels
 
+    def simplify(bound: Bound, coarse: bool) -> _kernels.SimplifiedMesh:
+        marched = _kernels.marching_cubes(volume.samples, stored, below, False, threads)
+        mesh = (marched.vertices, marched.triangles)
+        given = (volume.samples, stored, below, False, threads, DEFAULT_BLOCK_SIZE, bound.distance)
+        start = _kernels.climb(*given, measured=False)[:2] if coarse else mesh
+        return _kernels.simplify(*start, *mesh, bound.distance, threads=threads)
+
+    def simplified(bound: Bound, coarse: bool) -> Simplified:
+        seconds, found = _median_of(partial(simplify, bound, coarse), repeats)
+        return Simplified(len(found.triangles), seconds, found.error[0], found.back_max)
+
     mc_seconds, mc_triangles = _median_of(march, repeats)
     if mc_triangles == 0:
         raise FieldError(f"isovalue {exact(isovalue)} draws no surface; choose another with -i")
@@ -106,7 +157,8 @@ def volume_bench(
     for size, text in plans:
         bound = bound_for(volume, parse_max_error(text))
         seconds, (triangles, error) = _median_of(partial(climb, size, bound), repeats)
-        runs.append(Run(size, text, triangles, seconds, error))
+        fewer = [simplified(bound, coarse) for coarse in (True, False)] if text != "none" else [None, None]
+        runs.append(Run(size, text, triangles, seconds, error, *fewer))
     return ClimbingBench(isovalue, mc_triangles, mc_seconds, tuple(runs))
 
 

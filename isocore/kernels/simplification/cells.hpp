@@ -19,7 +19,8 @@ struct Cells {
     double per_cell = 1;                    // from coordinates to cells
     std::array<std::size_t, 3> dims{1, 1, 1};
 
-    // Cells that hold all vertices of a mesh. Where the side is 1, corners of cells have whole coordinates.
+    // Cells that hold all vertices of a mesh, not many more than it has triangles: where there were, they are twice as
+    // wide, or four times and so on. Where the side is 1, corners of cells have whole coordinates.
     template <class Real>
     static Cells around(const MeshArrays<Real>& mesh, double side) {
         std::array<double, 3> low, high;
@@ -30,12 +31,21 @@ struct Cells {
             low[n % 3] = std::min(low[n % 3], at);
             high[n % 3] = std::max(high[n % 3], at);
         }
+        constexpr double kMostPerTriangle = 32, kMostPerAxis = 1 << 20;
+        const double most = 4096 + kMostPerTriangle * static_cast<double>(mesh.triangle_count);
         Cells out;
-        out.per_cell = 1 / side;
-        for (std::size_t a = 0; a < 3 && mesh.vertex_count > 0; ++a) {
-            out.origin[a] = std::floor(low[a] / side) * side;
-            out.dims[a] = static_cast<std::size_t>((high[a] - out.origin[a]) * out.per_cell) + 1;
+        for (; mesh.vertex_count > 0; side *= 2) {
+            std::array<double, 3> dims;
+            for (std::size_t a = 0; a < 3; ++a) {
+                out.origin[a] = std::floor(low[a] / side) * side;
+                dims[a] = std::floor((high[a] - out.origin[a]) / side) + 1;
+            }
+            if (dims[0] * dims[1] * dims[2] > most || *std::max_element(dims.begin(), dims.end()) > kMostPerAxis)
+                continue;
+            for (std::size_t a = 0; a < 3; ++a) out.dims[a] = static_cast<std::size_t>(dims[a]);
+            break;
         }
+        out.per_cell = 1 / side;
         return out;
     }
 

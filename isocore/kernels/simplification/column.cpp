@@ -9,7 +9,8 @@ namespace {
 
 // Distances below this, in cells, are not told apart: some times what rounding does to places a few cells away.
 constexpr float kBlur = 1e-5f;
-constexpr float kFar = 1e9f;  // what lanes past the end hold
+constexpr float kTilt = 1e-3f;  // what rounding does to a plane's height a cell away, at most
+constexpr float kFar = 1e9f;    // what lanes past the end hold
 
 }  // namespace
 
@@ -59,6 +60,12 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
     unsigned within = whole;
     unsigned partly = over & ~whole;
     if (partly != 0) partly &= ~apart(u, v);
+    if (partly != 0) {
+        const unsigned flat = partly & has_low_plane(u, v, h);
+        if (flat != 0) distance_ = limit_;
+        within |= flat;
+        partly &= ~flat;
+    }
     for (unsigned bits = partly; bits != 0; bits &= bits - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
         std::array<Height, 3> triangle;
@@ -107,6 +114,23 @@ unsigned Column::apart(const Vector<Floats>& u, const Vector<Floats>& v) const {
               ((own < zero) & (margin < least(a, least(b, c))));
     }
     return out.bits();
+}
+
+// Of which of eight triangles does the plane lie within the limit over all of the column's triangle? Then so does what
+// of them lies in the column. Not of those that are nearly upright, whose planes rounding tilts.
+unsigned Column::has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const {
+    const Floats zero(0.0f), u1 = u[1] - u[0], v1 = v[1] - v[0], h1 = h[1] - h[0], u2 = u[2] - u[0], v2 = v[2] - v[0],
+                             h2 = h[2] - h[0], area = u1 * v2 - u2 * v1;
+    const Floats along = (h1 * v2 - h2 * v1) / area, across = (u1 * h2 - u2 * h1) / area;
+    const auto height = [&](float at_u, float at_v) {
+        return h[0] + along * (Floats(at_u) - u[0]) + across * (Floats(at_v) - v[0]);
+    };
+    const Floats a = height(0, 0), b = height(frame_.length, 0), c = height(frame_.top_u, frame_.top_v);
+    const Floats limit(limit_ - kTilt * (1 + frame_.length));
+    constexpr float kUpright = 0.01f;
+    return ((greatest(a, greatest(b, c)) <= limit) & (zero - limit <= least(a, least(b, c))) &
+            ((Floats(kUpright) < area) | (area < Floats(-kUpright))))
+        .bits();
 }
 
 // What of a triangle lies in the column: clipped at the column's three walls, a blur outside.

@@ -32,6 +32,7 @@ class Column {
     enum class Part { none, within, beyond, across };
 
     bool add_parts(const Patch& patch, std::size_t first);
+    unsigned has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const;
     unsigned apart(const Vector<Floats>& u, const Vector<Floats>& v) const;
     Part part_of(const std::array<Height, 3>& triangle) const;
     bool is_odd_at(float share, float other_share) const;

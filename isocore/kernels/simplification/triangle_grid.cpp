@@ -10,7 +10,7 @@ TriangleGrid::TriangleGrid(const Cells& cells) : cells_(cells) {
     for (std::size_t a = 0; a < 3; ++a) dims_[a] = ((cells.dims[a] - 1) >> kBits) + 1;
     first_.resize(dims_[0] * dims_[1] * dims_[2]);
     std::fill(first_.begin(), first_.end(), kNone);
-    blocks_.reserve(kMostBlocks);  // so that it never moves while others read it
+    chunks_.reserve(kMostChunks);  // so that they never move while others read them
 }
 
 template <class Real>
@@ -50,39 +50,58 @@ void TriangleGrid::cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::
     cubes_of<Real>({place(0), place(1), place(2)}, out);
 }
 
-void TriangleGrid::add_block(Spare& spare) {
+void TriangleGrid::add_chunk(Spare& spare) {
     const std::lock_guard<std::mutex> lock(guard_);
-    if (blocks_.size() == kMostBlocks) throw std::length_error("simplification: too many triangles in too many cells");
-    const auto start = static_cast<std::int32_t>(blocks_.size()) << kBlockBits;
-    constexpr std::int32_t kEntries = 1 << kBlockBits;
-    std::unique_ptr<Entry[]> block(new Entry[kEntries]);
-    for (std::int32_t n = 0; n < kEntries; ++n) block[static_cast<std::size_t>(n)] = {kNone, start + n + 1};
-    block[kEntries - 1].next = kNone;
-    blocks_.push_back(std::move(block));
+    if (chunks_.size() == kMostChunks) throw std::length_error("simplification: too many triangles in too many cells");
+    const auto start = static_cast<std::int32_t>(chunks_.size() << kChunkBits);
+    constexpr std::int32_t kBlocks = 1 << kChunkBits;
+    std::unique_ptr<Block[]> chunk(new Block[kBlocks]);
+    for (std::int32_t n = 0; n < kBlocks; ++n) chunk[static_cast<std::size_t>(n)].next = start + n + 1;
+    chunk[kBlocks - 1].next = kNone;
+    chunks_.push_back(std::move(chunk));
     spare.first = start;
 }
 
 void TriangleGrid::enter(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
-    for (std::size_t n = 0; n < count; ++n) {
-        if (spare.first == kNone) add_block(spare);
-        const std::int32_t taken = spare.first;
-        Entry& own = entry(taken);
-        spare.first = own.next;
-        std::int32_t& first = first_[static_cast<std::size_t>(cubes[n])];
-        own = {triangle, first};
-        first = taken;
-    }
+    for (std::size_t n = 0; n < count; ++n) enter(triangle, first_[static_cast<std::size_t>(cubes[n])], spare);
 }
 
 void TriangleGrid::remove(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
-    for (std::size_t n = 0; n < count; ++n) {
-        std::int32_t* link = &first_[static_cast<std::size_t>(cubes[n])];
-        while (*link != kNone && entry(*link).triangle != triangle) link = &entry(*link).next;
-        if (*link == kNone) continue;
-        const std::int32_t found = *link;
-        *link = entry(found).next;
-        entry(found).next = spare.first;
-        spare.first = found;
+    for (std::size_t n = 0; n < count; ++n) remove(triangle, first_[static_cast<std::size_t>(cubes[n])], spare);
+}
+
+void TriangleGrid::enter(std::int32_t triangle, std::int32_t& first, Spare& spare) {
+    if (first == kNone || block(first).triangles.back() != kNone) {
+        if (spare.first == kNone) add_chunk(spare);
+        const std::int32_t taken = spare.first;
+        Block& own = block(taken);
+        spare.first = own.next;
+        own.triangles.fill(kNone);
+        own.next = first;
+        first = taken;
+    }
+    auto& triangles = block(first).triangles;
+    *std::find(triangles.begin(), triangles.end(), kNone) = triangle;
+}
+
+// The last triangle of the first block takes the place of the one that goes.
+void TriangleGrid::remove(std::int32_t triangle, std::int32_t& first, Spare& spare) {
+    for (std::int32_t b = first; b != kNone; b = block(b).next) {
+        auto& triangles = block(b).triangles;
+        const auto found = std::find(triangles.begin(), triangles.end(), triangle);
+        if (found == triangles.end()) continue;
+        Block& head = block(first);
+        auto last = std::find(head.triangles.begin(), head.triangles.end(), kNone);
+        --last;
+        *found = *last;
+        *last = kNone;
+        if (head.triangles.front() == kNone) {
+            const std::int32_t emptied = first;
+            first = head.next;
+            head.next = spare.first;
+            spare.first = emptied;
+        }
+        return;
     }
 }
 

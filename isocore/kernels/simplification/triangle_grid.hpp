@@ -20,7 +20,7 @@ class TriangleGrid {
   public:
     static constexpr int kBits = 1;  // a cube is this power of two of cells wide
 
-    // A thread's own entries: those it may use next.
+    // A thread's own blocks: those it may use next.
     struct Spare {
         std::int32_t first = kNone;
     };
@@ -39,8 +39,11 @@ class TriangleGrid {
     // visit(triangle) of each triangle of a cube.
     template <class Visit>
     void each_in(std::int32_t cube, const Visit& visit) const {
-        for (std::int32_t e = first_[static_cast<std::size_t>(cube)]; e != kNone; e = entry(e).next)
-            visit(entry(e).triangle);
+        for (std::int32_t b = first_[static_cast<std::size_t>(cube)]; b != kNone; b = block(b).next) {
+            for (const std::int32_t triangle : block(b).triangles) {
+                if (triangle != kNone) visit(triangle);
+            }
+        }
     }
     // The cube of a cell, and the number of a cube.
     std::int32_t number(const Cell& cube) const {
@@ -52,22 +55,26 @@ class TriangleGrid {
     const Cells& cells() const { return cells_; }
 
   private:
-    struct Entry {
-        std::int32_t triangle, next;
+    // A part of a list. The first of a list may have room left, at its end; the others are full.
+    struct Block {
+        std::array<std::int32_t, 7> triangles;
+        std::int32_t next;
     };
-    static constexpr int kBlockBits = 14;
-    static constexpr std::size_t kMostBlocks = std::size_t{1} << 17;
+    static constexpr int kChunkBits = 12;
+    static constexpr std::size_t kMostChunks = std::size_t{1} << 19;
 
-    Entry& entry(std::int32_t number) const {
-        return blocks_[static_cast<std::size_t>(number >> kBlockBits)][number & ((1 << kBlockBits) - 1)];
+    Block& block(std::int32_t number) const {
+        return chunks_[static_cast<std::size_t>(number >> kChunkBits)][number & ((1 << kChunkBits) - 1)];
     }
-    void add_block(Spare& spare);
+    void add_chunk(Spare& spare);
+    void enter(std::int32_t triangle, std::int32_t& first, Spare& spare);
+    void remove(std::int32_t triangle, std::int32_t& first, Spare& spare);
 
     Cells cells_;
     std::array<std::size_t, 3> dims_;  // in cubes
-    Array<std::int32_t> first_;        // entry of each cube
-    std::mutex guard_;                 // of blocks_
-    std::vector<std::unique_ptr<Entry[]>> blocks_;
+    Array<std::int32_t> first_;        // block of each cube
+    std::mutex guard_;                 // of chunks_
+    std::vector<std::unique_ptr<Block[]>> chunks_;
 };
 
 }  // namespace isocore::simplification
