@@ -23,6 +23,7 @@ from isocore.report import RENDERERS, BatchReport, load_report, merged, run_as_d
 from isocore.report.compare import compared, comparison_rows, faults
 from isocore.report.limits import parse_limit
 from isocore.report.schema import parsed
+from isocore.report.summary import summary_row
 
 IDENTITY: dict[str, Any] = {"source": "a.nii", "output": "b.ply", "status": "done"}
 #: What a value may become.
@@ -272,3 +273,13 @@ def test_parsing_is_strict() -> None:
     for text in ("NaN", "[Infinity]", "{'a': 1}", "[1,]", "", "\x00"):
         with pytest.raises(InputError):
             parsed(text)
+
+
+def test_an_end_of_a_range_may_be_null(written: dict[str, Any], tmp_path: Path) -> None:
+    """JSON has no infinities, so that a report says null; the isovalue that was chosen is shown all the same."""
+    whole = copy.deepcopy(written)
+    whole["outputs"][0] |= {"range": [None, 7.0], "isovalue": 2.5, "chosen": "Otsu's threshold"}
+    batch = loaded(tmp_path, whole)
+    for suffix, render in RENDERERS.items():
+        assert render(batch) is not None, suffix
+    assert summary_row(batch.outputs[0], "a")[1] == "2.5"

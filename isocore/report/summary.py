@@ -75,7 +75,7 @@ def isovalue_text(run: RunReport) -> str:
         return run.asked.asked
     if run.chosen == "given":
         return exact(run.isovalue)
-    ends = (run.field and run.field.range) or ()
+    ends = [end for end in (run.field and run.field.range) or () if end is not None]  # JSON has no infinities
     return legible(run.isovalue, *ends)[0]
 
 
