@@ -13,6 +13,7 @@ from isocore.errors import printable, told
 
 from .console import say, screen_width, styled, unarmed
 from .groups import GroupedCommand, option_of
+from .offers import commands
 from .options import PATH, Reading, default_threads, reading_options
 from .table import cells_of, folded
 
@@ -50,9 +51,9 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
             failures += 1
             continue
         if as_json:
-            described.append(_record(path, found))
+            described.append(_record(path, found, reading))
         else:
-            click.echo("\n".join(map(unarmed, _lines(path, found, screen_width(sys.stdout)))))
+            click.echo("\n".join(map(unarmed, _lines(path, found, reading, screen_width(sys.stdout)))))
     if as_json:
         from isocore.report.texts import json_text
 
@@ -60,16 +61,17 @@ def info(context: click.Context, files: tuple[Path, ...], as_json: bool, reading
     context.exit(1 if failures else 0)
 
 
-def _record(path: Path, found: Description) -> dict[str, Any]:
+def _record(path: Path, found: Description, reading: Reading) -> dict[str, Any]:
     from isocore.report.keys import plain
 
     isovalues = [{"isovalue": one.isovalue, "option": str(one.asked), "why": one.why} for one in found.isovalues]
     record = {"source": str(path), **found.facts, "histogram": found.spread.coarse(), "isovalues": isovalues}
+    record["commands"] = commands(path, found, reading)
     plain_record: dict[str, Any] = plain(record)
     return plain_record
 
 
-def _lines(path: Path, found: Description, width: int | None) -> list[str]:
+def _lines(path: Path, found: Description, reading: Reading, width: int | None) -> list[str]:
     lines = [styled(unarmed(printable(path, stray=True)), bold=True)]
     facts = [(key, _line(key, value, found)) for key, value in found.facts.items() if _worth_a_line(key, value)]
     for key, text in [*facts, *(("warning", warning) for warning in found.facts["warnings"])]:
@@ -81,7 +83,8 @@ def _lines(path: Path, found: Description, width: int | None) -> list[str]:
         lines += folded(f"  {'isovalue':<12} {value:<{number}}  {asked:<{option}}  ", why, width)
     if not isovalues:
         lines += folded(f"  {'isovalue':<12} ", "none: the samples do not differ", width)
-    return lines
+    # Not folded: a command is pasted as it stands.
+    return lines + [f"  {'command':<12} {command}" for command in commands(path, found, reading)]
 
 
 def _line(key: str, value: Any, found: Description) -> str:
@@ -93,6 +96,8 @@ def _line(key: str, value: Any, found: Description) -> str:
         return f"{exact(value[0])} to {exact(value[-1])}"
     if key == "labels":
         return f"{value:,} values, constant over regions: it looks like a label map"
+    if key == "mask":
+        return "two values, " + " and ".join(legible(*value)) + ": it is a mask"
     if key == "bounds":
         axes = [legible(*ends, digits=_DIGITS) for ends in zip(*value, strict=True)]
         low, high = (", ".join(corner) for corner in zip(*axes, strict=True))

@@ -13,7 +13,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.extrema import count_extrema
 from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram, histogram
-from isocore.isovalue import Chosen, suggestions
+from isocore.isovalue import Chosen, is_two_valued, suggestions
 from isocore.readers import ReadOptions, count_volumes, offered_fields, read, times_of
 from isocore.segmentation import label_count
 from isocore.volume import Volume
@@ -55,6 +55,8 @@ def describe(path: Path, options: ReadOptions, *, threads: int = 1) -> Descripti
         facts["ignored"] = known.ignored
     if labels := label_count(source, spread):
         facts["labels"] = labels
+    if isinstance(source, Volume) and is_two_valued(spread):
+        facts["mask"] = spread.kept_range
     isovalues = suggestions(spread)
     facts["warnings"] = [*source.warnings, *(warning for chosen in isovalues[:1] for warning in chosen.warnings)]
     return Description(facts, spread, isovalues)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from itertools import permutations, product
 from pathlib import Path
 
@@ -128,3 +129,43 @@ def test_the_range_is_shown_in_the_digits_of_its_type(tmp_path: Path) -> None:
     (line,) = [line for line in run(path).stdout.splitlines() if line.lstrip().startswith("range")]
     assert "-3.4028235e+38 to" in line
     assert "-3.4" not in run(path, "--ignore", line.split()[1]).stdout.split("warning")[0]
+
+
+def pasted(tmp_path: Path, *arguments: object) -> tuple[str, int]:
+    """The command that info offers, and how many files it makes in a folder of its own."""
+    (command,) = json.loads(run(*arguments, "--json").stdout)[0]["commands"]
+    assert f"  command      {command}\n" in run(*arguments).stdout
+    program, name, *words = shlex.split(command)
+    assert (program, name) == ("isocore", "convert")
+    result = CliRunner().invoke(convert, [*words, "-d", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.output
+    return command, len(list((tmp_path / "out").iterdir()))
+
+
+def test_a_mask_is_offered_smoothing(tmp_path: Path) -> None:
+    """As a command that runs as it stands, whatever the file's name."""
+    path = write_nifti(tmp_path / "my mask's.nii", (ball() > 50).astype(np.uint8))
+    command, files = pasted(tmp_path, path)
+    assert command.endswith(" --smooth 20") and files == 1
+    assert "two values, 0 and 1: it is a mask" in run(path).stdout
+
+
+def test_a_label_map_is_offered_its_labels(tmp_path: Path) -> None:
+    """Of a 4-D file those of the volume that is described; of a raw one with all that its reader was told."""
+    samples = np.zeros((12, 12, 12, 2), np.uint8)
+    for label, place in enumerate((1, 5, 9), 1):
+        samples[place : place + 3, 1:11, 1:11] = label
+    command, files = pasted(tmp_path, write_nifti(tmp_path / "seg.nii", samples), "--volume", 1)
+    assert command.endswith(" --volume 1 --labels all --smooth 20") and files == 3
+    raw = tmp_path / "seg.raw"
+    raw.write_bytes(samples[..., 0].tobytes(order="F"))
+    told = ("--shape", "12,12,12", "--dtype", "uint8", "--spacing", "0.5,0.5,1", "--ignore", 9)
+    command, _ = pasted(tmp_path, raw, *told)
+    assert "--shape 12,12,12 --dtype uint8 --spacing 0.5,0.5,1 --ignore 9 --labels all" in command
+
+
+def test_other_fields_are_offered_no_command(tmp_path: Path) -> None:
+    """Their isovalues are what info has to say."""
+    path = write_nifti(tmp_path / "ball.nii", ball())
+    assert json.loads(run(path, "--json").stdout)[0]["commands"] == []
+    assert "command" not in run(path).stdout
