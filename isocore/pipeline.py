@@ -96,7 +96,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                 run = RunReport(
                     asked=_asked(job, target),
                     status="done" if measured.triangles else "empty",
-                    message="" if measured.triangles else kept.message or emptiness(chosen, spread),
+                    message="" if measured.triangles else kept.message or emptiness(chosen, spread, findings.label),
                     warnings=source.warnings
                     + known.warnings
                     + chosen.warnings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from isocore.digits import exact, legible
+from isocore.extraction import LabelFacts
 from isocore.field_facts import FieldFacts
 from isocore.histogram import Histogram
 from isocore.isovalue import Chosen, is_two_valued, middle
@@ -10,9 +11,11 @@ from isocore.labels import Label
 from isocore.measurements import Measurements
 
 
-def emptiness(chosen: Chosen, spread: Histogram) -> str:
-    """Why there is no surface."""
+def emptiness(chosen: Chosen, spread: Histogram, label: LabelFacts | None = None) -> str:
+    """Why there is no surface; label: what is known of the one that was asked for."""
     if isinstance(chosen.asked, Label):
+        if label is not None and label.voxels:
+            return f"{chosen.asked} is the background, which has no surface; --background names another"
         return f"no sample is {chosen.asked}"
     if spread.range is None:
         return f"no surface at isovalue {exact(chosen.isovalue)}; no sample is finite"

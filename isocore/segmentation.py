@@ -103,7 +103,8 @@ def isovalue_warnings(chosen: Chosen, spread: Histogram, labels: int) -> tuple[s
     taken, beside = ("too little", high_text) if share > 0.5 else ("too much", low_text)
     return (
         f"the samples are a mask of {low_text} and {high_text}, and isovalue {exact(isovalue)} puts the surface onto "
-        f"the samples that are {beside}, so that it encloses {taken}: -i {exact(middle(low, high))} lies midway, and --smooth 20 takes the steps out",
+        f"the samples that are {beside}, so that it encloses {taken}: -i {exact(middle(low, high))} lies midway, "
+        "and --smooth 20 takes the steps out",
     )
 
 

@@ -181,7 +181,7 @@ def test_floats_that_hold_whole_numbers_are_labels_and_nan_is_background(tmp_pat
     labels[0, 0, 0] = np.nan
     source = write_map(tmp_path / "seg.nii", labels)
     assert run(source, "--labels", "all", "-d", tmp_path / "out", "--report", tmp_path / "r.json").exit_code == 0
-    assert any("1 samples are NaN" in warning for warning in records(tmp_path / "r.json")[0]["warnings"])
+    assert any("1 sample is NaN" in warning for warning in records(tmp_path / "r.json")[0]["warnings"])
     labels[0, 0, 0] = 0.25
     result = run(write_map(tmp_path / "odd.nii", labels), "--labels", "all", "-d", tmp_path / "odd")
     assert result.exit_code == 1
@@ -233,3 +233,35 @@ def test_totalsegmentators_map_names_its_organs(tmp_path: Path) -> None:
     result = run(LABELS / "totalsegmentator_42.nii.gz", "--labels", "all", "-d", tmp_path, "--require", "watertight")
     assert result.exit_code == 0
     assert (tmp_path / "totalsegmentator_42_spleen.ply").is_file()
+
+
+def test_the_background_has_no_surface_and_the_message_says_so(tmp_path: Path) -> None:
+    """Asked for by its number, and in a map that holds nothing else."""
+    path, empty = write_map(tmp_path / "seg.nii", two_boxes()), write_map(tmp_path / "e.nii", 0 * two_boxes())
+    for file, asked in ((path, "0"), (empty, "all")):
+        run(file, "--labels", asked, "-d", tmp_path / "out", "--report", tmp_path / "r.json")
+        (row,) = records(tmp_path / "r.json")
+        assert row["status"] == "empty"
+        assert row["message"] == "label 0 is the background, which has no surface; --background names another"
+
+
+def test_samples_that_are_ignored_are_not_counted_as_nan(tmp_path: Path) -> None:
+    """They are background because they were named, which is no news; one NaN is a sample."""
+    samples = two_boxes().astype(np.float32)
+    samples[3, 3, 3] = np.nan
+    run(write_map(tmp_path / "seg.nii", samples), "--labels", "all", "--ignore", 2, "-d", tmp_path / "out",
+        "--report", tmp_path / "r.json")  # fmt: skip
+    (row,) = records(tmp_path / "r.json")
+    assert "1 sample is NaN and counts as background" in row["warnings"] and row["ignored"] == 96
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_a_map_of_100000_labels_is_the_largest(tmp_path: Path, more: int) -> None:
+    """The background not counted; of what is refused the values are counted."""
+    samples = np.zeros(47 * 47 * 48, np.int32)
+    samples[: 100_000 + more] = np.arange(1, 100_001 + more)
+    path = write_map(tmp_path / "many.nii", samples.reshape(47, 47, 48), names=False)
+    run(path, "--labels", 5, "-d", tmp_path / "out", "--report", tmp_path / "r.json")
+    (row,) = records(tmp_path / "r.json")
+    assert row["status"] == ("failed" if more else "done")
+    assert more == 0 or "holds 100,002 values, and a label map has at most 100,000 labels" in row["message"]

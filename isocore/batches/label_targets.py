@@ -51,7 +51,7 @@ def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int,
         field = read(path, options)
         if not isinstance(field, Volume):
             return ()
-        values = take_census(field).values
+        values = take_census(field, background).values
     except (IsocoreError, MemoryError):
         return ()
     return tuple(int(value) for value in values if value != background)

@@ -20,6 +20,9 @@ from isocore.labels import MOST_LABELS, Label
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
+#: A volume that is refused has its values counted up to so many.
+_MOST_COUNTED = 10_000_000
+
 
 def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     """Extract all labels at once; what is returned picks one, by its number.
@@ -29,7 +32,7 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     if not isinstance(field, Volume):
         raise FieldError("is a mesh, which holds no labels; leave out --labels")
     volume, background = field, options.background or 0
-    census = take_census(volume)
+    census = take_census(volume, background)
     ranks = _ranks(census.values, background)
     surfaces = _kernels.label_surfaces(volume.samples, census.stored, ranks, options.threads)
     if options.smooth:
@@ -81,20 +84,33 @@ class Census:
     warnings: tuple[str, ...]
 
 
-def take_census(volume: Volume) -> Census:
+def take_census(volume: Volume, background: int = 0) -> Census:
     """Raises FieldError where the samples are no labels."""
-    found = _kernels.label_census(volume.samples.reshape(-1, order="F"), MOST_LABELS)
+    flat = volume.samples.reshape(-1, order="F")
+    found = _kernels.label_census(flat, MOST_LABELS + 1)
     if found.too_many:
-        raise FieldError(f"holds more than {MOST_LABELS:,} values, so it is no label map; leave out --labels")
+        raise _too_many(_kernels.label_census(flat, _MOST_COUNTED))
     values = found.values * volume.slope + volume.intercept
     whole = np.rint(values)
     odd = found.not_whole or next(iter(values[np.abs(values - whole) > 1e-6].tolist()), None)
     if odd is not None:
         raise FieldError(f"holds {odd:.9g}, which is no label: labels are whole numbers; leave out --labels")
+    if int((whole != background).sum()) > MOST_LABELS:
+        raise _too_many(found)
     order = np.argsort(whole, kind="stable")
-    nan = found.not_a_number
-    warnings = (f"{nan:,} samples are NaN and count as background",) if nan else ()
+    nan = found.not_a_number - volume.ignored
+    are = "sample is NaN and counts" if nan == 1 else "samples are NaN and count"
+    warnings = (f"{nan:,} {are} as background",) if nan else ()
     return Census(whole[order], found.values[order], found.counts[order], warnings)
+
+
+def _too_many(census: _kernels.LabelCensus) -> FieldError:
+    """What to say of a volume with more values than labels may be."""
+    number = f"more than {_MOST_COUNTED:,}" if census.too_many else f"{len(census.values):,}"
+    return FieldError(
+        f"holds {number} values, and a label map has at most {MOST_LABELS:,} labels; ask for an isovalue with -i, "
+        "or leave out --labels"
+    )
 
 
 def _ranks(values: npt.NDArray[np.float64], background: int) -> npt.NDArray[np.uint32]:
