@@ -265,3 +265,14 @@ def test_a_map_of_100000_labels_is_the_largest(tmp_path: Path, more: int) -> Non
     (row,) = records(tmp_path / "r.json")
     assert row["status"] == ("failed" if more else "done")
     assert more == 0 or "holds 100,002 values, and a label map has at most 100,000 labels" in row["message"]
+
+
+def test_a_name_that_is_too_long_for_a_file_is_cut(tmp_path: Path) -> None:
+    """In the file's name only; two that then agree get their numbers."""
+    names = ["ä" * 300 + "left", "ä" * 300 + "right"]
+    (tmp_path / "names.csv").write_text("".join(f"{n},{name}\n" for n, name in enumerate(names, 1)), encoding="utf-8")
+    path = write_map(tmp_path / "seg.nii", two_boxes(), names=False)
+    run(path, "--labels", "all", "--names", tmp_path / "names.csv", "-d", tmp_path, "--report", tmp_path / "r.json")
+    rows = records(tmp_path / "r.json")
+    assert [row["label"]["name"] for row in rows] == names
+    assert [Path(row["output"]).name for row in rows] == [f"seg_{'ä' * 50}_{n}.ply" for n in (1, 2)]

@@ -17,6 +17,8 @@ from isocore.readers.options import ReadOptions
 from isocore.volume import Volume
 
 _UNSAFE = re.compile(r"[^\w.+-]+")
+#: Bytes of a label's name in a file's.
+_LONGEST = 100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,12 +61,17 @@ def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int,
 
 def _with_file_names(choices: Iterable[Label]) -> tuple[Label, ...]:
     """Each with a name that is one for a file too. Labels that share one get their number behind it."""
-    plain = [(choice, _UNSAFE.sub("_", choice.name).strip("._") or f"label_{choice.value}") for choice in choices]
+    plain = [(choice, _safe(choice.name) or f"label_{choice.value}") for choice in choices]
     alike = Counter(name.casefold() for _, name in plain)
     return tuple(
         replace(choice, file_name=f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name)
         for choice, name in plain
     )
+
+
+def _safe(name: str) -> str:
+    """A name as a part of a file's, which has no room for more than 255 bytes."""
+    return _UNSAFE.sub("_", name).encode()[:_LONGEST].decode(errors="ignore").strip("._")
 
 
 def palette(value: int) -> tuple[int, int, int]:
