@@ -9,6 +9,7 @@ void test_signs();
 void test_halvings();
 void test_facets();
 void test_meeting();
+void test_simplification();
 void test_polygons();
 void test_in_order();
 void test_intersections();
@@ -29,6 +30,7 @@ int main() {
     test_halvings();
     test_facets();
     test_meeting();
+    test_simplification();
     test_polygons();
     test_in_order();
     test_intersections();

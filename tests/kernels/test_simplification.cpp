@@ -1,0 +1,72 @@
+// Simplification of small random volumes under sanitizers: the counts fit, and threads change nothing. What it promises
+// is told by brute force in tests/algorithms/test_simplification.py.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "check.hpp"
+#include "marching_cubes/marching_cubes.hpp"
+#include "simplification/simplify.hpp"
+
+namespace {
+
+using namespace isocore;
+using simplification::MeshArrays;
+using simplification::Simplified;
+
+struct Volume {
+    Dims dims;
+    std::vector<float> samples;
+};
+
+// Waves with noise; every third is noise alone.
+Volume volume_of(int seed, const Dims& most) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    std::uniform_real_distribution<float> noise(-1, 1);
+    Volume out{most, {}};
+    for (std::size_t& length : out.dims) length -= random() % 3;
+    for (std::size_t k = 0; k < out.dims[2]; ++k) {
+        for (std::size_t j = 0; j < out.dims[1]; ++j) {
+            for (std::size_t i = 0; i < out.dims[0]; ++i) {
+                const float wave = std::sin(0.6f * static_cast<float>(i)) + std::cos(0.5f * static_cast<float>(j)) +
+                                   std::sin(0.4f * static_cast<float>(k));
+                out.samples.push_back(seed % 3 == 0 ? noise(random) : wave + 0.2f * noise(random));
+            }
+        }
+    }
+    return out;
+}
+
+template <class Real>
+void simplify(int seed, const Dims& most, double bound, std::size_t most_triangles) {
+    const Volume volume = volume_of(seed, most);
+    marching_cubes::Options asked;
+    asked.capped = seed % 2 == 0;
+    const auto marched = marching_cubes::march<float, Real>({volume.samples.data(), volume.dims}, asked);
+    const MeshArrays<Real> mesh{marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(),
+                                marched.triangles.size() / 3};
+    simplification::Options options;
+    options.max_error = bound;
+    options.stretch = {1, 0.7, 0.4};
+    options.most_triangles = most_triangles;
+    const Simplified<Real> found = simplification::simplify(mesh, mesh, options);
+    CHECK(found.triangles.size() / 3 + 2 * found.facts.collapses == mesh.triangle_count);
+    CHECK(found.vertices.size() / 3 + found.facts.collapses == mesh.vertex_count);
+    CHECK(found.facts.error.max <= bound);
+    CHECK(found.facts.unproved == 0 || !std::isfinite(bound));
+    options.threads = 3;
+    const Simplified<Real> again = simplification::simplify(mesh, mesh, options);
+    CHECK(found.vertices == again.vertices && found.triangles == again.triangles);
+}
+
+}  // namespace
+
+void test_simplification() {
+    for (int seed = 0; seed < 30; ++seed) simplify<float>(seed, {9, 8, 7}, 0.2 + 0.2 * (seed % 4), 0);
+    for (int seed = 0; seed < 3; ++seed) simplify<double>(seed, {12, 13, 12}, 0.5, 0);
+    for (int seed = 0; seed < 3; ++seed) simplify<float>(seed, {9, 9, 9}, std::numeric_limits<double>::infinity(), 20);
+    simplify<float>(1, {150, 8, 7}, 0.5, 0);  // several boxes
+}
