@@ -14,8 +14,6 @@ import click
 
 from isocore.errors import printable
 
-from .table import columns_of, set_table, shortened
-
 if TYPE_CHECKING:
     from isocore.job import Job
     from isocore.report import BatchReport
@@ -99,6 +97,8 @@ class Progress:
         """The first input at work, in the room that the bar leaves, and how many others there are."""
         more = f" and {len(self._names) - 1} more" if len(self._names) > 1 else ""
         room = (screen_width(sys.__stderr__ or sys.stderr) or 80) - _BEFORE_NAME - len(more)
+        from .table import shortened  # late: nobody waits for it who only wants help
+
         return shortened(self._names[:1] or [""], max(room, 10))[0] + more
 
     def _show(self) -> None:
@@ -160,6 +160,8 @@ def styled(text: str, **style: Any) -> str:
 def say_table(batch: BatchReport) -> None:
     """One line per output, in the width of the terminal, then their sums; red where something went wrong."""
     from isocore.report.summary import HEADINGS, LEAVING, RIGHT, summary_rows, totals_line
+
+    from .table import columns_of, set_table
 
     columns = columns_of(HEADINGS, RIGHT, LEAVING, shrinks=HEADINGS[0])
     headings, *lines = set_table(columns, summary_rows(batch), screen_width(sys.stderr))

@@ -6,14 +6,12 @@ import signal
 import sys
 from contextlib import suppress
 from importlib import import_module
-from pathlib import Path
 from types import FrameType
 
 import click
 
 from isocore.errors import IsocoreError, OptionError, one_line, printable
 
-from .console import say, unarmed
 from .names import speak_any_name
 from .streams import CANNOT_WRITE, open_closed_streams, settle_streams, working_folder_is_there
 
@@ -105,15 +103,17 @@ def main() -> None:
     except click.exceptions.Exit as wish:
         code = wish.exit_code
     except click.ClickException as error:
+        from .console import unarmed
+
         error.message = unarmed(printable(error.message))
         with suppress(OSError):
             error.show()
         code = WRONG_COMMAND
     except (KeyboardInterrupt, click.exceptions.Abort):
-        say("isocore: interrupted")
+        _say("isocore: interrupted")
         code = INTERRUPTED
     except Terminated as end:
-        say(f"isocore: {end}")
+        _say(f"isocore: {end}")
         code = end.code
     except Exception as error:
         code = _failure(error)
@@ -121,28 +121,37 @@ def main() -> None:
     sys.exit(code or 0)
 
 
+def _say(line: str) -> None:
+    """A line on stderr; what says it is imported late, since most commands end well."""
+    from .console import say
+
+    say(line)
+
+
 def _failure(error: Exception) -> int:
     """Say what went wrong in one line; the code to exit with."""
     if isinstance(error, FileNotFoundError) and not working_folder_is_there():
-        say("isocore: the working folder is gone; change into one that is there")
+        _say("isocore: the working folder is gone; change into one that is there")
         return WRONG_COMMAND
     if isinstance(error, OSError) and error.errno in CANNOT_WRITE:  # an output file's error has its name by now
         if not isinstance(error, BrokenPipeError):  # else whoever read our output has left
-            say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
+            _say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
         return FAILED
     if isinstance(error, IsocoreError):
-        say(f"isocore: {error}")
+        _say(f"isocore: {error}")
         return WRONG_COMMAND if isinstance(error, OptionError) else FAILED
     if isinstance(error, ImportError):
-        say(f"isocore: {one_line(error)}{'' if error.name == 'isocore._kernels' else '; install isocore again'}")
+        _say(f"isocore: {one_line(error)}{'' if error.name == 'isocore._kernels' else '; install isocore again'}")
         return FAILED
     if sys.flags.dev_mode:
         raise error
     import traceback
 
     place = traceback.extract_tb(error.__traceback__)[-1]
+    from pathlib import Path  # late: it takes longer than all of the help
+
     where = f"{Path(place.filename).name} line {place.lineno}, `python -X dev` shows all of it"
-    say(f"isocore: internal error ({type(error).__name__}: {one_line(error)}; {where}); please report it")
+    _say(f"isocore: internal error ({type(error).__name__}: {one_line(error)}; {where}); please report it")
     return FAILED
 
 

@@ -9,7 +9,6 @@ import errno
 import os
 import sys
 from contextlib import suppress
-from pathlib import Path
 
 #: What a write to a stream may fail with.
 CANNOT_WRITE = frozenset(
@@ -45,7 +44,7 @@ def settle_streams() -> None:
 def working_folder_is_there() -> bool:
     """Somebody may have deleted it, and then no relative path leads anywhere."""
     try:
-        Path.cwd()
+        os.getcwd()  # noqa: PTH109 - pathlib takes longer to import than all of the help
     except OSError:
         return False
     return True

@@ -68,8 +68,8 @@ LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads)
         starts[n + 1] = {starts[n].vertices + slabs[n].elements.size(), starts[n].triangles + slabs[n].sides.size() / 2,
                          starts[n].curves + slabs[n].curves.size()};
     }
-    constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-    if (starts[count].vertices > most || starts[count].triangles > most) {
+    constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+    if (starts[count].vertices > kMost || starts[count].triangles > kMost) {
         throw std::length_error("the labels' surfaces have more than 2^31 vertices or triangles");
     }
     std::vector<std::size_t> middles(count + 1);

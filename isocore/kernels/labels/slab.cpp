@@ -117,7 +117,7 @@ std::int32_t Slab::add_vertex(std::size_t i, std::size_t j, std::size_t k, Eleme
 }
 
 void Slab::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
-    constexpr std::array<Element, 3> elements{1, 2, 3};
+    constexpr std::array<Element, 3> kElements{1, 2, 3};
     std::int32_t before = 0;
     const auto each = [&](const auto& number) {
         for_each_marked(plane.marks, 0, plane_, [&](std::size_t at) {
@@ -128,7 +128,7 @@ void Slab::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
     };
     if (!of_slab_before) {
         each([&](std::size_t n, std::size_t at) {
-            plane.numbers[n][at] = add_vertex(at % row_, at / row_, k, elements[n]);
+            plane.numbers[n][at] = add_vertex(at % row_, at / row_, k, kElements[n]);
         });
         return;
     }
@@ -137,11 +137,11 @@ void Slab::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
 }
 
 void Slab::number_layer(std::size_t k) {
-    constexpr std::array<Element, 3> elements{4, 5, 6};
+    constexpr std::array<Element, 3> kElements{4, 5, 6};
     for_each_marked(upright_marks_, 0, plane_, [&](std::size_t at) {
         for (std::size_t n = 0; n < 3; ++n) {
             if (upright_marks_[at] >> n & 1) {
-                upright_numbers_[n][at] = add_vertex(at % row_, at / row_, k, elements[n]);
+                upright_numbers_[n][at] = add_vertex(at % row_, at / row_, k, kElements[n]);
             }
         }
     });
@@ -150,13 +150,13 @@ void Slab::number_layer(std::size_t k) {
 // A cell has anything to draw if its corners are not all alike: if one of seven edges that connect them is crossed.
 void Slab::draw_layer(std::size_t k) {
     const std::size_t before = mesh_.elements.size();
-    constexpr std::uint64_t along_x = 0x0101010101010101u, along_both = 0x0303030303030303u;
+    constexpr std::uint64_t kAlongX = 0x0101010101010101u, kAlongBoth = 0x0303030303030303u;
     for (std::size_t j = 0; j + 1 < dims_[1]; ++j) {
         const std::size_t begin = j * row_, end = begin + row_ - 1;
         for (std::size_t at = begin; at < end; at += kWord) {
             const std::uint64_t here = word_at(low_.marks, at) | word_at(high_.marks, at);
             const std::uint64_t next = word_at(low_.marks, at + row_) | word_at(high_.marks, at + row_);
-            std::uint64_t word = (here & along_both) | ((next | word_at(upright_marks_, at)) & along_x);
+            std::uint64_t word = (here & kAlongBoth) | ((next | word_at(upright_marks_, at)) & kAlongX);
             while (word != 0) {
                 const std::size_t byte = lowest_byte(word);
                 if (at + byte >= end) break;
