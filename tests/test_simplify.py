@@ -77,6 +77,22 @@ def test_a_bound_in_millimetres_holds_in_the_world() -> None:
     assert error.back_max_world <= 0.2
 
 
+def test_what_is_not_proved_of_climbings_mesh_is_not_kept() -> None:
+    """Climbing bounds no way back; where a triangle of its is too far to prove, marching cubes' mesh is simplified."""
+    rows = [[214, 84, -184, 24, 128], [124, 96, -5, 223, 288], [65, 60, -82, 94, 25], [41, -50, -278, -38, -59]]
+    layer = np.array(rows, np.float32).T / 1000
+    volume = Volume(np.asfortranarray(np.repeat(layer[:, :, None], 3, axis=2)))
+    asked = Options(block_size=4, max_error="0.1")
+    marched = _kernels.marching_cubes(volume.samples, 0.0568)
+    climbed = _kernels.climb(volume.samples, 0.0568, block_size=4, max_error=0.1)
+    assert _kernels.simplify(climbed.vertices, climbed.triangles, *marched[:2], 0.1).unproved == 1
+    found = prepare(volume, "asc", asked)(0.0568)
+    assert not broken_promises((found.surface.vertices, found.surface.triangles), marched[:2], 0.1)
+    assert found.findings.error is not None and found.findings.error.back_max is not None
+    facts = found.findings.simplification
+    assert facts is not None and facts.triangles_before == len(marched.triangles)
+
+
 def test_a_mesh_is_simplified_in_its_own_unit() -> None:
     """Against its own marching tetrahedra; the border stays, and so does the topology."""
     mesh = torus()
