@@ -109,13 +109,18 @@ def test_man_pages_are_made_without_numpy_or_compiled_modules(tmp_path: Path) ->
     """As when a wheel is built: from the source folder, with click alone."""
     root = Path(__file__).resolve().parent.parent
     script = root / "docs" / "man_pages.py"
-    code = (
-        "import sys, runpy; sys.modules |= dict.fromkeys(['numpy', 'rich', 'isocore._kernels'])\n"
-        f"sys.argv = ['', {str(tmp_path)!r}]; runpy.run_path({str(script)!r}, run_name='__main__')"
-    )
-    done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()} == man_pages()
+    made = []
+    for missing in (["numpy", "rich", "isocore._kernels"], []):
+        folder = tmp_path / ("without" if missing else "with")
+        code = (
+            f"import sys, runpy; sys.modules |= dict.fromkeys({missing!r})\n"
+            f"sys.argv = ['', {str(folder)!r}]; runpy.run_path({str(script)!r}, run_name='__main__')"
+        )
+        folder.mkdir()
+        done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        made.append({path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()})
+    assert made[0] == made[1] and set(made[0]) == set(man_pages())
 
 
 def completed(shell: str, words: tuple[str, ...], patch: pytest.MonkeyPatch) -> list[str]:

@@ -175,7 +175,7 @@ def test_a_known_format_that_is_damaged_too_says_so(tmp_path: Path) -> None:
     assert refused(path.rename(tmp_path / "scan.nrrd")).startswith("ends early")
 
 
-def test_a_damaged_file_of_its_own_suffix_is_no_stranger(tmp_path: Path) -> None:
+def test_a_damaged_file_of_its_own_suffix_is_no_stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is wrong with it is said as before."""
     path = save(tmp_path / "scan.nii", ramp())
     path.write_bytes(path.read_bytes()[:-3])
@@ -183,7 +183,8 @@ def test_a_damaged_file_of_its_own_suffix_is_no_stranger(tmp_path: Path) -> None
     patched(path, 40, b"\x63")
     assert refused(path).startswith("header counts 99 axes")
     (tmp_path / "scan.xyz").write_bytes(b"\1\2\3")
-    assert refused(tmp_path / "scan.xyz") == f"has no suffix known here; known are {', '.join(SEARCHED)}"
+    monkeypatch.chdir(tmp_path)  # a message has 300 characters, and a long path takes them from the list
+    assert refused(Path("scan.xyz")) == f"has no suffix known here; known are {', '.join(SEARCHED)}"
 
 
 def test_bare_samples_may_begin_with_anything(tmp_path: Path) -> None:
@@ -200,7 +201,7 @@ def test_bare_samples_may_begin_with_anything(tmp_path: Path) -> None:
         read(path)
 
 
-def test_a_folder_without_inputs_says_what_it_holds(tmp_path: Path) -> None:
+def test_a_folder_without_inputs_says_what_it_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Exit code 2, and what to do with the first file that is known by name or by its first bytes."""
     series = tmp_path / "series"
     series.mkdir()
@@ -211,8 +212,9 @@ def test_a_folder_without_inputs_says_what_it_holds(tmp_path: Path) -> None:
         assert isinstance(run.exception, OptionError) and said in str(run.exception)
     (series / "IM0001").unlink()
     os.mkfifo(series / "IM0001")
+    monkeypatch.chdir(tmp_path)
     with pytest.raises(OptionError, match="holds no file isocore reads; known are"):
-        find_inputs([series])
+        find_inputs([Path("series")])
 
 
 def test_a_batch_names_each(tmp_path: Path) -> None:
