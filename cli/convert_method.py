@@ -31,7 +31,7 @@ METHOD = (
     ),
     _method(
         "--simplify/--no-simplify",
-        show_default="no-simplify",
+        show_default="simplify for asc with a bound",
         default=None,
         help="Fewest triangles within --max-error, both ways; no self-intersections.",
     ),
