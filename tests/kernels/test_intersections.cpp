@@ -111,6 +111,31 @@ void distances_are_those_to_the_nearest_triangle() {
     CHECK(std::abs(found.squares - (4 + 25 + 1 + 1)) < 1e-12);
 }
 
+// Points within a few last digits of the line through (12, 12) and (24, 24): doubles cannot tell, and the exact answer
+// has the sign that doubles give further away.
+void a_line_has_the_same_sides_near_and_far() {
+    const double digit = 0x1p-53;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto placed = [&](double x, double y) {
+            Vec3 point{};
+            point[axis == 0 ? 1 : 0] = x;
+            point[axis == 2 ? 1 : 2] = y;
+            return point;
+        };
+        int undecided = 0;
+        for (int x = 0; x < 16; ++x) {
+            for (int y = 0; y < 16; ++y) {
+                const Vec3 near = placed(0.5 + x * digit, 0.5 + y * digit), far = placed(0.5 + x, 0.5 + y);
+                const Vec3 a = placed(12, 12), b = placed(24, 24);
+                undecided += likely_line_side(axis, near, a, b) == 0;
+                CHECK(line_side(axis, near, a, b) == line_side(axis, far, a, b));
+                CHECK(line_side(axis, near, a, b) == (x < y) - (x > y));
+            }
+        }
+        CHECK(undecided > 16);
+    }
+}
+
 }  // namespace
 
 void test_intersections() {
@@ -118,4 +143,5 @@ void test_intersections() {
     the_side_of_a_line_is_exact();
     a_sheet_is_counted_as_pair_by_pair();
     distances_are_those_to_the_nearest_triangle();
+    a_line_has_the_same_sides_near_and_far();
 }

@@ -1,12 +1,13 @@
-// orientation.hpp - On which side of a plane, or of a line, a point lies: the exact sign, whatever the rounding.
-// The determinant is reckoned in double first; only where its error could reach its value is it summed up exactly.
-// After J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", Discrete &
-// Computational Geometry 18(3), 1997: the bounds of the first stage, and the expansions of the last.
+// orientation.hpp - On which side of a plane, or of a line, a point lies: in double where that can tell, else exactly,
+// by common/predicates.hpp. Here stand the first tests alone, inline, with bounds as tight as can be, and their answer
+// "cannot tell", which is all that most callers need. The bounds are those of J. R. Shewchuk, "Adaptive Precision
+// Floating-Point Arithmetic and Fast Robust Geometric Predicates", Discrete & Computational Geometry 18(3), 1997.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 
+#include "common/predicates.hpp"
 #include "surface/mesh_view.hpp"
 
 namespace isocore::intersections {
@@ -15,9 +16,6 @@ namespace isocore::intersections {
 constexpr double kEpsilon = 1.1102230246251565e-16;
 constexpr double kPlaneBound = (7.0 + 56.0 * kEpsilon) * kEpsilon;
 constexpr double kLineBound = (3.0 + 16.0 * kEpsilon) * kEpsilon;
-
-int exact_plane_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
-int exact_line_side(double ax, double ay, double bx, double by, double cx, double cy);
 
 inline int sign_of(double value) { return (value > 0) - (value < 0); }
 
@@ -34,10 +32,11 @@ inline int likely_plane_side(const Vec3& a, const Vec3& b, const Vec3& c, const 
     return std::abs(value) > kPlaneBound * size ? sign_of(value) : 0;
 }
 
-// The side of the plane through a, b, c on which d lies: the same sign for all d on one side, 0 on the plane.
+// The side of the plane through a, b, c on which d lies: -1 where a, b, c turn counter-clockwise seen from d, 0 on the
+// plane.
 inline int plane_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     const int likely = likely_plane_side(a, b, c, d);
-    return likely != 0 ? likely : exact_plane_side(a, b, c, d);
+    return likely != 0 ? likely : -side_of_plane(a, b, c, d);
 }
 
 // Seen along `axis`, which way the corners a, b, c turn: 0 where double precision cannot tell.
@@ -52,8 +51,8 @@ inline int likely_line_side(std::size_t axis, const Vec3& a, const Vec3& b, cons
 inline int line_side(std::size_t axis, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int likely = likely_line_side(axis, a, b, c);
     if (likely != 0) return likely;
-    const std::size_t x = axis == 0 ? 1 : 0, y = axis == 2 ? 1 : 2;
-    return exact_line_side(a[x], a[y], b[x], b[y], c[x], c[y]);
+    const int exact = turn(a, b, c, axis);  // of the two other axes in cyclic order, which for axis 1 is the other one
+    return axis == 1 ? -exact : exact;
 }
 
 }  // namespace isocore::intersections
