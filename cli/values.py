@@ -152,7 +152,7 @@ class VolumeChoice(_Worded):
         """A number from 0, or all."""
         if value == "all":
             return "all"
-        if not str(value).isdecimal():
+        if not re.fullmatch(r"\d{1,18}", str(value)):
             self.fail(f"{value}: needs a number from 0, or all", parameter, context)
         return int(value)
 
@@ -164,7 +164,7 @@ class Memory(click.ParamType):
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int:
         """The number of bytes."""
-        match = re.fullmatch(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[kmgt]?)(i?b)?", str(value).strip().lower())
+        match = re.fullmatch(r"(?P<number>\d{1,18}(\.\d+)?)\s*(?P<unit>[kmgt]?)(i?b)?", str(value).strip().lower())
         if not match:
             self.fail(f"{value}: needs a size, as 500M or 4G", parameter, context)
         return int(float(match["number"]) * 1024 ** " kmgt".index(match["unit"] or " "))
@@ -180,7 +180,7 @@ class Jobs(_Worded):
         """A number from 1, or auto."""
         if value == "auto" or isinstance(value, int):
             return value
-        if not str(value).isdecimal() or int(value) < 1:
+        if not re.fullmatch(r"\d{1,18}", str(value)) or int(value) < 1:
             self.fail(f"{value}: needs a number from 1, or auto", parameter, context)
         return int(value)
 

@@ -33,7 +33,7 @@ TOPOLOGIES = ("faces", "trilinear")
 MILLIMETRES = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "m": 1e3}
 
 _MOST_OF_A_RANGE = 10_000
-_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d+)|\+(?P<step>[^:]+))")
+_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d{1,18})|\+(?P<step>[^:]+))")
 _LENGTH = re.compile(r"(?P<number>[^a-zµ]+?(e[-+]?\d+)?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
 
 

@@ -10,7 +10,7 @@ from isocore.errors import OptionError
 #: Labels that one map may hold.
 MOST_LABELS = 100_000
 
-_LABELS = re.compile(r"(?P<first>-?\d+)(?:\s*-\s*(?P<last>-?\d+))?")
+_LABELS = re.compile(r"(?P<first>-?\d{1,18})(?:\s*-\s*(?P<last>-?\d{1,18}))?")
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from isocore.readers.label_tables import Colour, LabelName
 from isocore.readers.nifti import extension_texts
 from isocore.readers.nrrd_header import remarks
 
-_SEGMENT = re.compile(r"Segment(\d+)_(Name|LabelValue|Color|Layer|ID)")
+_SEGMENT = re.compile(r"Segment(\d{1,9})_(Name|LabelValue|Color|Layer|ID)")
 
 
 def names_inside(path: Path, suffix: str, layer: int | None = None) -> dict[int, LabelName]:

@@ -14,11 +14,11 @@ Colour = tuple[int, int, int]
 #: A table longer than this is none.
 _MOST_BYTES = 1 << 24
 #: FreeSurfer and Slicer: number, name, red, green, blue, and a last column that is alpha or its opposite.
-_NAME_FIRST = re.compile(r"\s*(-?\d+)\s+(.+?)\s+(\d+)\s+(\d+)\s+(\d+)(?:\s+\d+)?\s*")
+_NAME_FIRST = re.compile(r"\s*(-?\d{1,15})\s+(.+?)\s+(\d+)\s+(\d+)\s+(\d+)(?:\s+\d+)?\s*")
 #: ITK-SNAP: number, red, green, blue, alpha, visible, mesh, "name".
-_NAME_LAST = re.compile(r'\s*(-?\d+)\s+(\d+)\s+(\d+)\s+(\d+)\s+[\d.]+\s+\d+\s+\d+\s+"(.*)"\s*')
+_NAME_LAST = re.compile(r'\s*(-?\d{1,15})\s+(\d+)\s+(\d+)\s+(\d+)\s+[\d.]+\s+\d+\s+\d+\s+"(.*)"\s*')
 #: Number and name alone.
-_NAME_ALONE = re.compile(r"\s*(-?\d+)\s+(\S.*?)\s*")
+_NAME_ALONE = re.compile(r"\s*(-?\d{1,15})\s+(\S.*?)\s*")
 
 _NUMBERS = ("index", "label", "labelvalue", "value", "id", "key", "number", "no")
 _NAMES = ("name", "label_name", "labelname", "structure", "region", "label", "abbreviation")

@@ -29,7 +29,9 @@ from isocore.readers.pointers import absence_beside
 from isocore.volume import Volume
 
 #: A name with one printf place for a number, then first, last and step.
-_NUMBERED = re.compile(r"(?P<pattern>[^%]*%0?\d?[diu][^%]*?)\s+(?P<first>\d+)\s+(?P<last>\d+)(\s+(?P<step>\d+))?")
+_NUMBERED = re.compile(
+    r"(?P<pattern>[^%]*%0?\d?[diu][^%]*?)\s+(?P<first>\d{1,18})\s+(?P<last>\d{1,18})(\s+(?P<step>\d{1,18}))?"
+)
 #: So many files are looked for before the header is known to be sound.
 _MOST_FILES = 1 << 16
 

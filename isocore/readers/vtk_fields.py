@@ -87,7 +87,7 @@ def component_of(path: str, field: FieldInfo, asked: int | str | None) -> int | 
         )
     if asked == "magnitude":
         return None
-    if str(asked).isdecimal() and int(asked) <= last:
+    if str(asked) in map(str, range(last + 1)):
         return int(asked)
     raise OptionError(f"{path}: field {field.name!r} has no component {asked}; use 0 to {last}, or magnitude")
 

@@ -324,6 +324,7 @@ def test_data_may_lie_in_several_files(tmp_path: Path, named: str, encoding: str
         ("slice%d.raw 0 5 1", "no slice0.raw beside it"),
         ("slice%d.raw 5 0 1", "numbers 0 data files"),
         ("slice%d.raw 0 9999999999 1", "numbers 10000000000 data files"),
+        (f"slice%d.raw {'9' * 5000} 1 1", "File name too long"),
         (
             "LIST\nshort.raw\nshort.raw\nshort.raw\nshort.raw\nshort.raw\nshort.raw\nshort.raw",
             "unevenly over 7 files",
