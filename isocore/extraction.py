@@ -32,11 +32,21 @@ class Outlook:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Angles:
+    """Between each triangle's normal and the field's gradient at its corners, in degrees; p95: 95 % are no larger."""
+
+    mean: float
+    p95: float
+    max: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Deviation:
     """How far the reference's vertices lie from the surface: largest, mean and root mean square.
 
     In voxels, None for a mesh, and in the world in `unit`; bound: what was asked for, as it was written. back_max: no
-    point of the surface lies further from the reference; None where that is not known.
+    point of the surface lies further from the reference; None where that is not known. normal_degrees: how far
+    triangles are turned from the field's gradient, in the world.
     """
 
     max: float | None
@@ -49,6 +59,7 @@ class Deviation:
     bound: str
     back_max: float | None = None
     back_max_world: float | None = None
+    normal_degrees: Angles | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,12 +165,16 @@ class Findings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Extraction:
-    """A surface in the world, and what its method has to say about it; seconds_normals: for vertex normals alone."""
+    """A surface in the world, and what its method has to say about it.
+
+    seconds_normals: for vertex normals alone; seconds_degrees: for the angles between triangles and the gradient.
+    """
 
     surface: Surface
     findings: Findings = field(default_factory=Findings)
     warnings: tuple[str, ...] = ()
     seconds_normals: float = 0.0
+    seconds_degrees: float = 0.0
 
     @property
     def facts(self) -> dict[str, Any]:

@@ -77,6 +77,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                 with timer("extract"):
                     found = extract(chosen.isovalue)
                 timer.move(found.seconds_normals, "extract", "normals")
+                timer.move(found.seconds_degrees, "extract", "measure")
                 with timer("measure"):
                     kept = keep_pieces(moved_surface(found.surface, source, offset), job.options)
                     surface, losses = rounded(kept.surface, job.format, threads)

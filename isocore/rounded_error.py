@@ -12,12 +12,13 @@ import numpy as np
 from isocore import _kernels
 from isocore.extraction import Field, Findings
 from isocore.job import Options
+from isocore.methods.normals import volume_normals
 from isocore.surface import Surface
 from isocore.volume import Volume
 
 
 def remeasured(findings: Findings, field: Field, isovalue: float, surface: Surface, options: Options) -> Findings:
-    """The findings with the distance of marching cubes' vertices to `surface`, in voxels and in the world.
+    """The findings with the distance of marching cubes' vertices to `surface`, in voxels and in the world, and angles.
 
     surface: as it is written, in the world of `field`. Nothing is measured where the method measured nothing.
     """
@@ -32,8 +33,13 @@ def remeasured(findings: Findings, field: Field, isovalue: float, surface: Surfa
     voxels = _kernels.distances_to(vertices, surface.triangles, points, threads)
     spacing = np.array(field.spacing)
     world = _kernels.distances_to(vertices * spacing, surface.triangles, points * spacing, threads)
+    triangles = surface.triangles
+    if np.linalg.det(field.affine[:3, :3]) < 0:  # in index space they turn the other way
+        triangles = np.ascontiguousarray(triangles[:, ::-1])
+    asked = replace(options, normals=False)
     error = replace(
         findings.error,
+        normal_degrees=volume_normals(field, (vertices, triangles), asked, measured=True).degrees,
         max=voxels[0],
         mean=voxels[1],
         rms=voxels[2],

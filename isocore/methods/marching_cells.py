@@ -6,7 +6,6 @@ Doi, Koide 1991; Lorensen, Cline 1987; ambiguous faces by Nielson, Hamann 1991.
 from __future__ import annotations
 
 from dataclasses import replace
-from time import perf_counter
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
 from isocore.methods.bending import bend
+from isocore.methods.normals import mesh_normals
 from isocore.methods.simplifying import Simplifier, mesh_simplifier
 from isocore.surface import Point, Surface
 
@@ -27,8 +27,8 @@ _CAP = "--cap closes volumes only: a mesh's surface stays open where it meets th
 
 def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     """Scan all cells for every isovalue."""
-    warnings, single, edges = mesh_warnings(options), single_precision(mesh), needs_edges(mesh, options)
-    simplify = mesh_simplifier(mesh, options)
+    warnings, single, simplify = mesh_warnings(options), single_precision(mesh), mesh_simplifier(mesh, options)
+    edges = needs_edges(mesh, options, simplify)
 
     def extract(isovalue: float) -> Extraction:
         marched = _kernels.marching_cells(
@@ -41,9 +41,9 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
     return extract
 
 
-def needs_edges(mesh: CellMesh, options: Options) -> bool:
-    """Is the edge that each vertex lies on asked of the kernel? For normals, and to follow curved cells."""
-    return bool(options.normals or mesh.curved)
+def needs_edges(mesh: CellMesh, options: Options, simplify: Simplifier | None) -> bool:
+    """Is the edge that each vertex lies on asked of the kernel? For normals and angles, and to follow curved cells."""
+    return bool(options.normals or mesh.curved or simplify)
 
 
 def mesh_warnings(options: Options) -> tuple[str, ...]:
@@ -82,11 +82,12 @@ def mesh_surface(
     if simplify is not None:
         fewer = simplify((vertices, triangles))
         vertices, triangles, warnings = fewer.vertices, fewer.triangles, (*warnings, *fewer.warnings)
-        edges = edges[fewer.kept] if len(edges) else edges
+        edges = edges[fewer.kept[fewer.kept < len(edges)]]  # vertices without an edge come last, and keep their order
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
-    normals, start = None, perf_counter()
-    if options.normals:
-        cells = (mesh.points, mesh.tets, mesh.hexes, mesh.values)
-        normals = _kernels.mesh_normals(*cells, isovalue, edges, vertices, triangles, options.threads)
-    seconds = perf_counter() - start
-    return Extraction(Surface(vertices, triangles, normals, unit=mesh.unit), findings, warnings, seconds)
+    surface = (vertices, triangles)
+    error = findings.error
+    normals = mesh_normals(mesh, isovalue, edges, surface, options, measured=error is not None)
+    if error is not None:
+        findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
+    drawn = Surface(*surface, normals.vertices, unit=mesh.unit)
+    return Extraction(drawn, findings, warnings, normals.seconds, normals.seconds_degrees)

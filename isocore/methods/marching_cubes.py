@@ -7,11 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from time import perf_counter
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
@@ -20,8 +15,9 @@ from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
 from isocore.methods.marching_cells import prepare_marching_cells
+from isocore.methods.normals import volume_normals
 from isocore.methods.simplifying import Mesh, Simplifier, volume_simplifier
-from isocore.surface import Surface, place_fresh
+from isocore.surface import place_fresh
 from isocore.volume import Volume
 
 
@@ -71,20 +67,18 @@ def drawn(
         fewer = simplify(mesh, reference)
         mesh, warnings = (fewer.vertices, fewer.triangles), (*warnings, *fewer.warnings)
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
-    surface, seconds = placed_surface(volume, *mesh, options)
-    return Extraction(surface, findings, warnings, seconds)
+    return placed(volume, mesh, options, findings, warnings)
 
 
-def placed_surface(
-    volume: Volume, vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], options: Options
-) -> tuple[Surface, float]:
-    """A kernel's index-space mesh as a Surface in the volume's world; normals where asked for, and their seconds."""
-    normals, start = None, perf_counter()
-    if options.normals:
-        below = volume.inside_is_below
-        normals = _kernels.gradient_normals(volume.samples, vertices, triangles, below, options.threads)
-    seconds = perf_counter() - start
+def placed(
+    volume: Volume, mesh: Mesh, options: Options, findings: Findings, warnings: tuple[str, ...] = ()
+) -> Extraction:
+    """A kernel's index-space mesh as a surface in the volume's world, with the normals and angles that belong to it."""
+    error = findings.error
+    normals = volume_normals(volume, mesh, options, measured=error is not None)
+    if error is not None:
+        findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
     surface = place_fresh(
-        vertices, triangles, normals, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
+        *mesh, normals.vertices, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
     )
-    return surface, seconds
+    return Extraction(surface, findings, warnings, normals.seconds, normals.seconds_degrees)

@@ -37,7 +37,8 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
     index, ready, warnings = _index_of(mesh, outlook)
-    with_edges, simplify = needs_edges(mesh, options), mesh_simplifier(mesh, options)
+    simplify = mesh_simplifier(mesh, options)
+    with_edges = needs_edges(mesh, options, simplify)
     single, foreign = single_precision(mesh), outlook.index is not None
 
     def extract(isovalue: float) -> Extraction:

@@ -19,7 +19,7 @@ _PARTS = {
     "surface ": "area volume degenerate self_intersections",
     "reference": "name triangles vertices seconds",
     "ratio": "triangles seconds",
-    "error": "max mean rms max_world mean_world rms_world",
+    "error": "max mean rms max_world mean_world rms_world normal_degrees.mean normal_degrees.p95 normal_degrees.max",
     "search": "cells extrema skeleton visited intersected",
     "ambiguous": "faces cells",
     "seconds": "read prepare extract normals measure write total own",

@@ -1,5 +1,5 @@
-// bind_mesh_normals.cpp - mesh_normals(points, tets, hexes, values, isovalue, edges, vertices, triangles, threads), for
-// float32 and float64 values and vertices.
+// bind_mesh_normals.cpp - mesh_normals(points, tets, hexes, values, isovalue, edges, vertices, triangles, threads,
+// complete), for float32 and float64 values and vertices.
 #include "surface/mesh_normals.hpp"
 
 #include "python/arrays.hpp"
@@ -14,7 +14,7 @@ void bind(nb::module_& module) {
         "mesh_normals",
         [](const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
            const Vector<Value>& values, double isovalue, const Rows<std::int32_t, 2>& edges,
-           const Rows<Real, 3>& vertices, const Rows<std::int32_t, 3>& triangles, int threads) {
+           const Rows<Real, 3>& vertices, const Rows<std::int32_t, 3>& triangles, int threads, bool complete) {
             if (values.shape(0) != points.shape(0)) throw std::invalid_argument("there must be one value per point");
             const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
             const CellsView cells{tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)};
@@ -22,13 +22,15 @@ void bind(nb::module_& module) {
             Array<float> normals;
             {
                 const nb::gil_scoped_release unlocked;
-                normals = mesh_normals(field, cells, isovalue, {edges.data(), edges.shape(0)}, surface, threads);
+                normals =
+                    mesh_normals(field, cells, isovalue, {edges.data(), edges.shape(0)}, surface, complete, threads);
             }
             return to_numpy(std::move(normals), 3);
         },
         nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
         nb::arg("values").noconvert(), nb::arg("isovalue"), nb::arg("edges").noconvert(),
-        nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("threads") = 1);
+        nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("threads") = 1,
+        nb::arg("complete") = true);
 }
 
 }  // namespace

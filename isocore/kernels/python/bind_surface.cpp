@@ -16,6 +16,8 @@
 #include "surface/normals.hpp"
 #include "surface/place.hpp"
 #include "surface/size.hpp"
+#include "surface/tilt.hpp"
+#include "surface/unit.hpp"
 #include "surface/weld.hpp"
 
 namespace isocore::python {
@@ -64,7 +66,7 @@ void place_vertices(const Rows<From, 3>& vertices, const AffineArray& affine, co
 
 template <class Sample, class Real>
 nb::object normals_of_samples(const VolumeArray<Sample>& samples, const Rows<Real, 3>& vertices,
-                              const Triangles& triangles, bool below, int threads) {
+                              const Triangles& triangles, bool below, int threads, bool complete) {
     if (samples.shape(0) < 2 || samples.shape(1) < 2 || samples.shape(2) < 2) {
         throw std::invalid_argument("samples need two per axis");
     }
@@ -72,7 +74,7 @@ nb::object normals_of_samples(const VolumeArray<Sample>& samples, const Rows<Rea
     {
         nb::gil_scoped_release unlocked;
         const GridView<const Sample> view{samples.data(), {samples.shape(0), samples.shape(1), samples.shape(2)}};
-        normals = gradient_normals(view, mesh_view(vertices, triangles), below, threads);
+        normals = gradient_normals(view, mesh_view(vertices, triangles), below, complete, threads);
     }
     return to_numpy(std::move(normals), 3);
 }
@@ -140,6 +142,28 @@ void bind_real(nb::module_& module) {
         },
         arg("vertices").noconvert(), arg("triangles").noconvert(), arg("threads") = 1);
     module.def(
+        "complete_normals",
+        [](const Rows<Real, 3>& vertices, const Triangles& triangles, const OwnRows<float>& normals) {
+            if (normals.shape(0) != vertices.shape(0)) throw std::invalid_argument("there must be a normal per vertex");
+            const nb::gil_scoped_release unlocked;
+            complete_normals(mesh_view(vertices, triangles), normals.data());
+        },
+        arg("vertices").noconvert(), arg("triangles").noconvert(), arg("normals").noconvert());
+    module.def(
+        "tilt",
+        [](const Rows<Real, 3>& vertices, const Triangles& triangles, const Rows<float, 3>& normals,
+           const AffineArray& affine, int threads) {
+            if (normals.shape(0) != vertices.shape(0)) throw std::invalid_argument("there must be a normal per vertex");
+            Tilt found;
+            {
+                const nb::gil_scoped_release unlocked;
+                found = tilt(mesh_view(vertices, triangles), normals.data(), to_affine(affine), threads);
+            }
+            return nb::make_tuple(found.mean, found.p95, found.max, found.count);
+        },
+        arg("vertices").noconvert(), arg("triangles").noconvert(), arg("normals").noconvert(),
+        arg("affine").noconvert(), arg("threads") = 1);
+    module.def(
         "weld",
         [](const Rows<Real, 3>& vertices, int threads) {
             return make_records([&] { return weld(vertices.data(), vertices.shape(0), threads); });
@@ -151,9 +175,11 @@ template <class Sample>
 void bind_sample(nb::module_& module) {
     using nb::arg;
     module.def("gradient_normals", &normals_of_samples<Sample, float>, arg("samples").noconvert(),
-               arg("vertices").noconvert(), arg("triangles").noconvert(), arg("below"), arg("threads") = 1);
+               arg("vertices").noconvert(), arg("triangles").noconvert(), arg("below"), arg("threads") = 1,
+               arg("complete") = true);
     module.def("gradient_normals", &normals_of_samples<Sample, double>, arg("samples").noconvert(),
-               arg("vertices").noconvert(), arg("triangles").noconvert(), arg("below"), arg("threads") = 1);
+               arg("vertices").noconvert(), arg("triangles").noconvert(), arg("below"), arg("threads") = 1,
+               arg("complete") = true);
 }
 
 }  // namespace

@@ -174,12 +174,12 @@ bool store_normal(const Field<Value>& field, const std::int32_t* ends, double is
 
 template <class Value, class Real>
 Array<float> mesh_normals(const Field<Value>& field, const CellsView& cells, double isovalue, const EdgesView& edges,
-                          const MeshView<Real>& surface, int threads) {
+                          const MeshView<Real>& surface, bool complete, int threads) {
     if (edges.count > surface.vertex_count) throw std::invalid_argument("there are more edges than vertices");
     std::size_t count = 0;
     const Array<std::int32_t> number = number_ends(edges, field.size, count);
     const std::vector<Mean> sums = gradients(field, cells, number, count, threads);
-    return completed_normals(surface, threads, [&](std::size_t v, float* out) {
+    return stored_normals(surface, complete, threads, [&](std::size_t v, float* out) {
         if (v >= edges.count) return false;
         const std::int32_t* ends = edges.ends + 2 * v;
         const auto sum = [&](std::int32_t point) -> const Mean& {
@@ -190,12 +190,12 @@ Array<float> mesh_normals(const Field<Value>& field, const CellsView& cells, dou
 }
 
 template Array<float> mesh_normals(const Field<float>&, const CellsView&, double, const EdgesView&,
-                                   const MeshView<float>&, int);
+                                   const MeshView<float>&, bool, int);
 template Array<float> mesh_normals(const Field<float>&, const CellsView&, double, const EdgesView&,
-                                   const MeshView<double>&, int);
+                                   const MeshView<double>&, bool, int);
 template Array<float> mesh_normals(const Field<double>&, const CellsView&, double, const EdgesView&,
-                                   const MeshView<float>&, int);
+                                   const MeshView<float>&, bool, int);
 template Array<float> mesh_normals(const Field<double>&, const CellsView&, double, const EdgesView&,
-                                   const MeshView<double>&, int);
+                                   const MeshView<double>&, bool, int);
 
 }  // namespace isocore

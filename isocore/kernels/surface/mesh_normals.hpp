@@ -23,10 +23,11 @@ struct EdgesView {
 
 // At a point the gradient is the mean of those of its cells, each weighing as much as its volume; along an edge it is
 // interpolated. Normals point to lower values. Where there is no gradient, where it contradicts the edge's own slope,
-// and for vertices that lie on no edge, the normal is that of the triangles. The same for any number of threads.
-// Throws std::invalid_argument if a point or a vertex is named that is not there.
+// and for vertices that lie on no edge, the normal is that of the triangles, or, if normals are not to be complete,
+// NaN. The same for any number of threads. Throws std::invalid_argument if a point or a vertex is named that is not
+// there.
 template <class Value, class Real>
 Array<float> mesh_normals(const mesh::Field<Value>& field, const CellsView& cells, double isovalue,
-                          const EdgesView& edges, const MeshView<Real>& surface, int threads);
+                          const EdgesView& edges, const MeshView<Real>& surface, bool complete, int threads);
 
 }  // namespace isocore

@@ -148,10 +148,11 @@ bool contradicts(const GridView<const Sample>& samples, const GridEdge& edge, co
 }  // namespace
 
 template <class Sample, class Real>
-Array<float> gradient_normals(GridView<const Sample> samples, const MeshView<Real>& mesh, bool below, int threads) {
+Array<float> gradient_normals(GridView<const Sample> samples, const MeshView<Real>& mesh, bool below, bool complete,
+                              int threads) {
     check_indices(mesh.triangles, mesh.triangle_count, mesh.vertex_count);
     const double sign = below ? 1 : -1;
-    return completed_normals(mesh, threads, [&](std::size_t v, float* out) {
+    return stored_normals(mesh, complete, threads, [&](std::size_t v, float* out) {
         const Vec3 place = mesh.vertex(static_cast<std::int32_t>(v));
         if (!is_on_grid(samples.dims, place)) return false;
         const Cell cell = cell_around(samples.dims, place);
@@ -201,9 +202,9 @@ void store_triangle_normals(const MeshView<Real>& mesh, const std::vector<std::s
     }
 }
 
-#define ISOCORE_INSTANTIATE(Sample)                                                                    \
-    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<float>&, bool, int); \
-    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<double>&, bool, int);
+#define ISOCORE_INSTANTIATE(Sample)                                                                          \
+    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<float>&, bool, bool, int); \
+    template Array<float> gradient_normals(GridView<const Sample>, const MeshView<double>&, bool, bool, int);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/parallel.hpp"
-#include "surface/mesh_view.hpp"
 
 namespace isocore {
 namespace {
@@ -20,13 +19,12 @@ void for_each_block(std::size_t count, int threads, const Body& body) {
                  [&](std::size_t block) { body(block * kBlock, std::min(count, (block + 1) * kBlock)); });
 }
 
-// The cofactors of the linear part: the inverse transpose times the determinant, exact where the entries are.
+}  // namespace
+
 std::array<Vec3, 3> cofactors(const Affine& a) {
     const Vec3 x{a[0], a[1], a[2]}, y{a[4], a[5], a[6]}, z{a[8], a[9], a[10]};
     return {cross(y, z), cross(z, x), cross(x, y)};
 }
-
-}  // namespace
 
 template <class From, class To>
 void place(const From* vertices, std::size_t count, const Affine& affine, To* out, int threads) {

@@ -5,9 +5,15 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "surface/mesh_view.hpp"
+
 namespace isocore {
 
 using Affine = std::array<double, 12>;  // (3, 4), rows first
+
+// The cofactors of the linear part, row by row: the inverse transpose times the determinant, exact where the entries
+// are.
+std::array<Vec3, 3> cofactors(const Affine& affine);
 
 // out[v] = affine * (vertices[v], 1), computed in double and rounded once. `out` may be `vertices`.
 template <class From, class To>

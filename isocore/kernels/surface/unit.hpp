@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "common/array.hpp"
@@ -21,20 +22,29 @@ inline bool store_unit(const Vec3& direction, float* out) {
     return true;
 }
 
-// store(v, place) writes the normal of vertex v, or returns false: then it is that of the triangles.
+// Brings the normals that are not numbers to those of the triangles.
+template <class Real>
+void complete_normals(const MeshView<Real>& mesh, float* normals) {
+    std::vector<std::size_t> missing;
+    for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
+        if (std::isnan(normals[3 * v])) missing.push_back(v);
+    }
+    if (!missing.empty()) store_triangle_normals(mesh, missing, normals);
+}
+
+// store(v, place) writes the normal of vertex v, or returns false: then it is that of the triangles, or no numbers if
+// normals are not to be complete.
 template <class Real, class Store>
-Array<float> completed_normals(const MeshView<Real>& mesh, int threads, const Store& store) {
+Array<float> stored_normals(const MeshView<Real>& mesh, bool complete, int threads, const Store& store) {
     constexpr std::size_t kBlock = 4096;
     Array<float> normals(3 * mesh.vertex_count);
-    std::vector<std::vector<std::size_t>> missing((mesh.vertex_count + kBlock - 1) / kBlock);
-    parallel_for(threads, missing.size(), [&](std::size_t block) {
+    parallel_for(threads, (mesh.vertex_count + kBlock - 1) / kBlock, [&](std::size_t block) {
         for (std::size_t v = block * kBlock; v < std::min(mesh.vertex_count, (block + 1) * kBlock); ++v) {
-            if (!store(v, normals.data() + 3 * v)) missing[block].push_back(v);
+            float* const normal = normals.data() + 3 * v;
+            if (!store(v, normal)) std::fill_n(normal, 3, std::numeric_limits<float>::quiet_NaN());
         }
     });
-    std::vector<std::size_t> all;
-    for (const std::vector<std::size_t>& block : missing) all.insert(all.end(), block.begin(), block.end());
-    if (!all.empty()) store_triangle_normals(mesh, all, normals.data());
+    if (complete) complete_normals(mesh, normals.data());
     return normals;
 }
 
