@@ -70,7 +70,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
     "outputs": NOUNS | {"ambiguities", "report/sections", "whole_file", "writers"},
     "pieces": NOUNS | KERNELS,
-    "rounded_error": NOUNS | KERNELS,
+    "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
     "api": NOUNS | FIELD_ROOMS | {"backends", "pieces"},
     "many": NOUNS | {"api", "backends", "batches", "memory", "readers/options", "report"},
