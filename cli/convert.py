@@ -15,6 +15,7 @@ from isocore.choices import FORMATS, Choice, Format, distinct
 from isocore.requirements import REQUIREMENTS
 
 from .console import say
+from .convert_fields import check_colours
 from .convert_labels import label_request
 from .convert_options import ConvertOptions, convert_options
 from .groups import GroupedCommand
@@ -71,6 +72,8 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     format_ = _format(options)
     requirements = _requirements(options.require)
     _check_stdout(options)
+    maps = {"colormap": options.colormap, "color_by": options.color_by, "color_range": options.color_range}
+    check_colours(options.carry, options.colour, **maps)
 
     from isocore.batches.plan import Naming, check_template, find_inputs, plan  # late: readers bring numpy
     from isocore.batches.steps import StepChoice
@@ -177,7 +180,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         format=format_,
         backend=backend,
         options=options,
-        read_options=asked.reading.read_options(),
+        read_options=replace(asked.reading.read_options(), carry=tuple(dict.fromkeys(asked.carry))),
         space=asked.space,
         offset=asked.about,
         reference=asked.reference,
@@ -188,6 +191,9 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         force=asked.force,
         ambiguities=asked.ambiguities,
         colour=asked.colour,
+        colormap=asked.colormap,
+        color_by=asked.color_by,
+        color_range=asked.color_range,
     )
 
 

@@ -14,6 +14,7 @@ from isocore.choices import About, Choice, Format, MaxError
 from isocore.labels import Labels
 from isocore.piece_sizes import MinPiece
 
+from .convert_fields import FIELDS
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
 from .convert_method import METHOD
 from .convert_pieces import PIECES
@@ -57,6 +58,10 @@ class ConvertOptions:
     about: About | None
     normals: bool | None
     colour: tuple[int, int, int] | None
+    carry: tuple[str, ...]
+    colormap: str | None
+    color_by: str | None
+    color_range: tuple[float, float] | None
     ambiguities: Path | None
     jobs: int | Literal["auto"]
     threads: int | None
@@ -92,4 +97,4 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
     def with_record(context: click.Context, /, **values: Any) -> None:
         command(context, ConvertOptions(**values))
 
-    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *OUTPUT, *BATCH, *REPORT))
+    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *OUTPUT, *FIELDS, *BATCH, *REPORT))

@@ -13,7 +13,7 @@ from isocore import choices, labels
 from isocore.errors import OptionError
 
 
-class _Worded(click.ParamType):
+class Worded(click.ParamType):
     """A type some of whose values are words, which a shell can complete."""
 
     words: tuple[str, ...] = ()
@@ -92,7 +92,7 @@ class Ignored(click.ParamType):
         return number
 
 
-class MaxErrorType(_Worded):
+class MaxErrorType(Worded):
     """Voxels (0.5), world units (0.3mm), or none."""
 
     name = "E"
@@ -106,7 +106,7 @@ class MaxErrorType(_Worded):
             self.fail(f"{value}: needs voxels (0.5), world units (0.3mm) or none", parameter, context)
 
 
-class Isovalue(_Worded):
+class Isovalue(Worded):
     """A number, otsu, pNN or auto; A:B:N are several."""
 
     name = "V"
@@ -131,7 +131,7 @@ class Colour(click.ParamType):
         return value if isinstance(value, tuple) else labels.parse_colour(str(value))
 
 
-class LabelList(_Worded):
+class LabelList(Worded):
     """Which labels of a label map."""
 
     name = "all|LIST"
@@ -142,7 +142,7 @@ class LabelList(_Worded):
         return labels.parse_labels(str(value))
 
 
-class VolumeChoice(_Worded):
+class VolumeChoice(Worded):
     """Which volume of a 4-D file."""
 
     name = "K|all"
@@ -170,7 +170,7 @@ class Memory(click.ParamType):
         return int(float(match["number"]) * 1024 ** " kmgt".index(match["unit"] or " "))
 
 
-class Jobs(_Worded):
+class Jobs(Worded):
     """How many inputs at once."""
 
     name = "N|auto"
@@ -185,7 +185,7 @@ class Jobs(_Worded):
         return int(value)
 
 
-class Words(_Worded):
+class Words(Worded):
     """Several words, with commas or blanks between them; whoever reads them checks them."""
 
     name = "LIST"

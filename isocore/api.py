@@ -8,11 +8,16 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Literal, SupportsFloat, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
 from isocore.backends import default_backend, prepare
+from isocore.carried import CarriedField, chosen
 from isocore.cell_mesh import CellMesh
 from isocore.choices import Choice, MaxError, Number, Voxels, parse_choice, spread
 from isocore.digits import exact
@@ -28,6 +33,7 @@ from isocore.volume import Volume
 
 Isovalue: TypeAlias = SupportsFloat | str
 Name: TypeAlias = os.PathLike[str] | str
+Carry: TypeAlias = str | Iterable[str] | Mapping[str, Volume | npt.ArrayLike]
 Topology: TypeAlias = Literal["faces", "trilinear"]
 
 _OPTION = re.compile(r"(?<![\w-])--?([a-z]+(?:-[a-z]+)*)\b")
@@ -52,6 +58,7 @@ def extract(
     normals: bool = False,
     threads: int = 1,
     options: Options | None = None,
+    carry: Carry | None = None,
 ) -> Surface:
     """One surface of a volume or a mesh.
 
@@ -66,6 +73,9 @@ def extract(
     cap: close the surface at the volume's border. normals: compute vertex normals.
     threads: at least 1; the surface is the same for any number.
     options: all of these in one object; then they are not looked at.
+    carry: which fields the surface gets the values of, as `surface.fields`: names of those that the field carries
+        (`ReadOptions(carry=...)`); or a mapping of names to volumes on the same grid, or to arrays of a value (or k)
+        for each sample or point, indexed as they are. None: all that the field carries.
 
     Raises OptionError for an argument that makes no sense, FieldError for a field that has no such isovalue.
     """
@@ -73,6 +83,7 @@ def extract(
         kind = type(field).__name__
         raise OptionError(f"field: is a {kind}, not a Volume or CellMesh; see Volume.from_array and read")
     with arguments_named():
+        field = _carrying(field, carry)
         asked = options or options_of(
             threads, cap, normals, block_size, max_error, simplify, triangles, topology, smooth, keep_largest,
             min_piece, fill_bubbles,
@@ -85,6 +96,35 @@ def extract(
         if not isinstance(choice, Number):
             choice = Number(choose(choice, histogram(field, threads=asked.threads)).isovalue, str(choice))
         return keep_pieces(extract_(choice.value).surface, asked).surface
+
+
+def _carrying(field: Volume | CellMesh, carry: Carry | None) -> Volume | CellMesh:
+    """The field with what it is asked to carry."""
+    if carry is None:
+        return field
+    if not isinstance(carry, Mapping):
+        return replace(field, carried=chosen(field.carried, (carry,) if isinstance(carry, str) else carry))
+    found = []
+    for name, values in carry.items():
+        if isinstance(values, Volume):
+            samples = values.samples.reshape(-1, order="F")
+            if not isinstance(field, Volume) or values.shape != field.shape or not _same_place(field, values):
+                raise OptionError(f"carry: {name!r} lies on another grid than the field; resample it to the same one")
+            found.append(CarriedField(name, samples, "points", values.slope, values.intercept))
+            continue
+        array = np.asarray(values)
+        axes = 3 if isinstance(field, Volume) else 1
+        shape = field.shape if isinstance(field, Volume) else (len(field.points),)
+        if array.shape[:axes] != shape or array.ndim > axes + 1 or array.dtype.kind not in "biuf":
+            raise OptionError(f"carry: {name!r} is no array of {' x '.join(map(str, shape))} real numbers, or vectors")
+        flat = array.reshape((-1, *array.shape[axes:]), order="F") if axes == 3 else array
+        found.append(CarriedField(name, flat, "points"))
+    return replace(field, carried=tuple(found))
+
+
+def _same_place(field: Volume, other: Volume) -> bool:
+    tolerance = 1e-2 * min(field.spacing) / max(field.shape)
+    return bool(np.allclose(field.affine, other.affine, rtol=1e-6, atol=tolerance))
 
 
 def choices_of(isovalue: Isovalue) -> tuple[Choice, ...]:

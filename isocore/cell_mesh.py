@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from isocore.carried import CarriedField, CellSources
 from isocore.errors import FieldError, printable
 
 
@@ -58,6 +59,8 @@ class CellMesh:
     connectivity: what was left out and joined.
     curved: cells that were divided; a surface's vertices follow them between their nodes.
     ignored: how many values are NaN because they were named as such.
+    carried: further fields of the points, or of the cells of `sources`, which surfaces get the values of.
+    sources: the cells as the file has them, where a field of cells is carried.
     """
 
     points: npt.NDArray[np.float64]
@@ -71,6 +74,8 @@ class CellMesh:
     connectivity: Connectivity = Connectivity()
     curved: tuple[CurvedCells, ...] = ()
     ignored: int = 0
+    carried: tuple[CarriedField, ...] = ()
+    sources: tuple[CellSources, ...] = ()
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -85,9 +90,20 @@ class CellMesh:
                 raise FieldError(f"{name} name a point outside 0..{n - 1}")
         if not len(self.tets) and not len(self.hexes):
             raise FieldError("a mesh needs at least one tetrahedron or hexahedron")
+        self._check_carried()
         for array in (self.points, self.tets, self.hexes, self.values):
             array.flags.writeable = False
         object.__setattr__(self, "warnings", tuple(map(printable, self.warnings)))
+
+    def _check_carried(self) -> None:
+        last = -1
+        for source in self.sources:
+            if source.nodes.size and (source.nodes.min() < 0 or source.nodes.max() >= len(self.points)):
+                raise FieldError(f"sources name a point outside 0..{len(self.points) - 1}")
+            last = max(last, int(source.numbers.max(initial=-1)))
+        for one in self.carried:
+            rows = len(one.values) if one.of == "cells" and len(one.values) > last else -1
+            one.check({"points": len(self.points), "cells": rows})
 
     def __repr__(self) -> str:
         """How large it is, and what its values are."""

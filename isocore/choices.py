@@ -23,6 +23,8 @@ Format: TypeAlias = Literal["ply", "obj", "stl", "glb", "gii"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 #: Those that hold a normal for every vertex.
 SHADED_FORMATS = frozenset({"ply", "obj", "glb", "gii"})
+#: Those that hold fields of the vertices.
+FIELD_FORMATS = frozenset({"ply", "glb", "gii"})
 #: Methods by name; the first is chosen by the field and by what is asked of it.
 BACKEND_NAMES = ("auto", "asc", "thinning", "mc")
 #: What the coordinates of vertices may mean; as volume.Space.

@@ -5,8 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from isocore.choices import SHADED_FORMATS, About, Choice, Format, MaxError, parse_about, parse_choice, parse_max_error
+from isocore.choices import (
+    FIELD_FORMATS,
+    SHADED_FORMATS,
+    About,
+    Choice,
+    Format,
+    MaxError,
+    parse_about,
+    parse_choice,
+    parse_max_error,
+)
 from isocore.errors import OptionError
+from isocore.labels import Label
 from isocore.piece_sizes import MinPiece, parse_min_piece
 from isocore.readers.options import ReadOptions
 from isocore.volume import Space, Volume, to_ras
@@ -80,6 +91,8 @@ class Job:
     self_intersections: count them; they are also counted where `require` names `simple`.
     require: names out of requirements.REQUIREMENTS; max_triangles: a further one.
     together: all targets are parts of one output, which all of them name. colour: of what has no colour of its own.
+    colormap, color_by, color_range: how the vertices are coloured by a field that `read_options.carry` carries; None:
+        viridis, the first of them, from its smallest to its largest value on the surface.
     ambiguities: where the ambiguous faces go, for a job of one target.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
@@ -102,6 +115,9 @@ class Job:
     ambiguities: Path | None = None
     together: bool = False
     colour: tuple[int, int, int] | None = None
+    colormap: str | None = None
+    color_by: str | None = None
+    color_range: tuple[float, float] | None = None
     if_changed: bool = False
     force: bool = False
     refusal: str = ""
@@ -121,6 +137,19 @@ class Job:
     def counts_intersections(self) -> bool:
         """Are self-intersections counted? Also where only a requirement asks for it."""
         return self.self_intersections or "simple" in self.require
+
+    @property
+    def holds_fields(self) -> bool:
+        """Does the format hold fields of the vertices?"""
+        return self.format in FIELD_FORMATS
+
+    @property
+    def colours_vertices(self) -> bool:
+        """Does the format get a colour for every vertex, where fields are carried? By default glb, but for labels."""
+        if self.colour is not None or self.format not in ("glb", "ply"):
+            return False
+        asked = any(given is not None for given in (self.colormap, self.color_by, self.color_range))
+        return asked or (self.format == "glb" and not any(isinstance(one.choice, Label) for one in self.targets))
 
     @property
     def normals(self) -> bool:

@@ -15,6 +15,7 @@ from isocore.batches.label_targets import LabelRequest
 from isocore.batches.plan import Naming, check_template, find_inputs, plan
 from isocore.batches.run import Batch, run_jobs
 from isocore.choices import Auto, Format, distinct
+from isocore.colormaps import parse_colormap
 from isocore.errors import OptionError
 from isocore.job import Job, Options
 from isocore.labels import parse_labels
@@ -59,6 +60,10 @@ def convert_files(
     timeout: float | None = None,
     reports: Name | Iterable[Name] = (),
     done: Callable[[RunReport], object] | None = None,
+    carry: Name | Iterable[Name] = (),
+    colormap: str | None = None,
+    color_by: str | None = None,
+    color_range: tuple[float, float] | None = None,
 ) -> BatchReport:
     """Convert files, and all that folders hold, as `isocore convert` does: what happens to one stops no others.
 
@@ -72,6 +77,8 @@ def convert_files(
     read_options: what files do not tell themselves; volume: which of a 4-D input, or "all".
     jobs: inputs at once, each in a process of its own; timeout: seconds for each.
     reports: files to write the report to, each in the format of its suffix.
+    carry: other fields by name, "all" of them, or files of volumes on the same grid, for the vertices of each surface;
+        colormap, color_by, color_range: how these colour GLB and PLY.
     done: called with the report of each output as soon as it is known.
 
     Returns the report of each output in the order of the inputs: what failed has the status "failed" and a message.
@@ -92,7 +99,10 @@ def convert_files(
                 share, cap, normals, block_size, max_error, simplify, triangles, topology, smooth, keep_largest,
                 min_piece, fill_bubbles,
             ),
-            read_options=_reading(read_options, volume),
+            read_options=_reading(read_options, volume, carry),
+            colormap=None if colormap is None else parse_colormap(colormap),
+            color_by=color_by,
+            color_range=color_range,
             space=space,
             reference=reference,
             require=tuple(require),
@@ -153,6 +163,8 @@ def _several(given: Any) -> list[Any]:
     return [given] if one else list(given)
 
 
-def _reading(options: ReadOptions | None, volume: int | str | None) -> ReadOptions:
+def _reading(options: ReadOptions | None, volume: int | str | None, carry: Name | Iterable[Name]) -> ReadOptions:
     reading = options or ReadOptions()
+    if carried := tuple(os.fspath(one) for one in _several(carry)):
+        reading = replace(reading, carry=carried)
     return replace(reading, volume=volume) if isinstance(volume, int) else reading

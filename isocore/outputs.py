@@ -9,16 +9,19 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 
+import numpy as np
+
 from isocore.ambiguities import find_ambiguities
 from isocore.errors import OptionError, writing
 from isocore.extraction import Field
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
-from isocore.report.sections import Written
+from isocore.report.sections import Carried, Colors, Written
 from isocore.surface import Part, Point, Surface, joined
 from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import WRITERS
+from isocore.writers.colormaps import coloured, magnitudes, range_of
 from isocore.writers.obj import write_materials, write_obj
 from isocore.writers.ply import write_ply_points
 
@@ -27,7 +30,52 @@ _NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --no
 
 def format_warnings(job: Job) -> tuple[str, ...]:
     """What was asked for and the format does not hold."""
-    return (_NO_NORMALS,) if job.options.normals and not job.normals else ()
+    without_normals = (_NO_NORMALS,) * bool(job.options.normals and not job.normals)
+    no_fields = f"{job.format.upper()} holds no fields, so --carry adds none; write PLY, VTP, GLB or GIFTI"
+    return without_normals + (no_fields,) * bool(job.read_options.carry and not job.holds_fields)
+
+
+def carried_facts(surface: Surface, source: Field) -> tuple[Carried, ...]:
+    """What is known of the fields on a surface."""
+    kinds = {field.name: field.of for field in source.carried}
+    found = []
+    for name, values in surface.fields.items():
+        numbers = magnitudes(values)
+        found.append(
+            Carried(
+                name=name,
+                of="cells" if kinds[name] == "cells" else "points",
+                components=1 if values.ndim == 1 else values.shape[1],
+                range=range_of(numbers),
+                nonfinite=int(np.count_nonzero(~np.isfinite(numbers))),
+            )
+        )
+    return tuple(found)
+
+
+def check_colours(source: Field, job: Job) -> None:
+    """Raises OptionError where vertices are to be coloured by a field that is not carried."""
+    names = [field.name for field in source.carried]
+    if job.color_by is not None and job.color_by not in names:
+        raise OptionError(f"--color-by {job.color_by}: is not carried; carried are {', '.join(names) or 'none'}")
+
+
+def colors_of(surface: Surface, job: Job) -> Colors | None:
+    """How the surface is coloured by a carried field; None where it carries none."""
+    by = job.color_by or next(iter(surface.fields), None)
+    if by is None:
+        return None
+    limits = job.color_range or range_of(magnitudes(surface.fields[by]))
+    return Colors(by=by, colormap=job.colormap or "viridis", range=limits)
+
+
+def _with_colours(surface: Surface, job: Job) -> Surface:
+    """The surface with a colour for every vertex, where it gets one."""
+    colors = colors_of(surface, job) if job.colours_vertices else None
+    if colors is None:
+        return surface
+    numbers = magnitudes(surface.fields[colors.by])
+    return replace(surface, colours=coloured(numbers, colors.colormap, colors.range))
 
 
 class Sink:
@@ -37,29 +85,33 @@ class Sink:
         self._job = job
         self._parts: list[Surface] = []
 
-    def write(self, surface: Surface, target: Target) -> Written | None:
-        """Write a rounded surface; None where it waits for the others."""
-        surface = self._dressed(surface, target)
+    def write(self, surface: Surface, target: Target, isovalue: float) -> tuple[Written | None, Colors | None]:
+        """Write a rounded surface, and how its vertices are coloured; None where it waits for the others."""
+        surface = self._dressed(surface, target, isovalue)
         if not self._job.together:
-            return write_target(surface, target, self._job)
+            return write_target(_with_colours(surface, self._job), target, self._job), colors_of(surface, self._job)
         self._parts.append(surface)
-        return None
+        return None, None
 
-    def finish(self) -> Written | None:
+    def finish(self) -> tuple[Written | None, Colors | None]:
         """Write what waits; None where nothing does."""
         if not self._parts:
-            return None
+            return None, None
         whole = joined(self._parts)
         self._parts.clear()
-        return write_target(whole, self._job.targets[0], self._job)
+        colors = colors_of(whole, self._job)
+        return write_target(_with_colours(whole, self._job), self._job.targets[0], self._job), colors
 
-    def _dressed(self, surface: Surface, target: Target) -> Surface:
-        """The surface with its name and colour, where it has them: labels, and whatever is given a colour."""
+    def _dressed(self, surface: Surface, target: Target, isovalue: float) -> Surface:
+        """The surface with what is known of it: labels, what is given a colour, and isovalues that share a file."""
         choice, colour = target.choice, self._job.colour
         counts = {"vertices": len(surface.vertices), "triangles": len(surface.triangles)}
         if isinstance(choice, Label):
             name = choice.name or choice.file_name or f"label_{choice.value}"
             part = Part(name=name, colour=colour or choice.colour, label=choice.value, **counts)
+        elif self._job.together:
+            name = f"{self._job.source.name.split('.')[0]}_{choice}".lstrip("_")
+            part = Part(name=name, colour=colour, isovalue=isovalue, **counts)
         elif colour is not None or self._job.format == "glb":
             part = Part(name=self._job.source.name.split(".")[0] or "surface", colour=colour, **counts)
         else:

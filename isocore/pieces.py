@@ -204,4 +204,5 @@ def _part(surface: Surface, of_vertex: npt.NDArray[np.int32], kept: _Mask) -> Su
     a, b, c = (stays[surface.triangles[:, corner]] for corner in range(3))
     triangles = number[surface.triangles[a & b & c]]
     normals = None if surface.normals is None else surface.normals[stays]
-    return replace(surface, vertices=surface.vertices[stays], triangles=triangles, normals=normals)
+    fields = {name: values[stays] for name, values in surface.fields.items()}
+    return replace(surface, vertices=surface.vertices[stays], triangles=triangles, normals=normals, fields=fields)

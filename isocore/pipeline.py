@@ -17,7 +17,7 @@ from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
-from isocore.outputs import Sink, format_warnings, write_ambiguities
+from isocore.outputs import Sink, carried_facts, check_colours, format_warnings, write_ambiguities
 from isocore.pieces import check_unit, keep_pieces
 from isocore.readers import files_of, read
 from isocore.remarks import border, emptiness
@@ -42,13 +42,13 @@ def convert(job: Job) -> Iterator[RunReport]:
     timer = Timer()
     try:
         with timer("write"):
-            written = sink.finish()
+            written, colors = sink.finish()
     except (IsocoreError, MemoryError, ValueError) as error:
         for target in job.targets:
             yield failed(job, target, error)
     else:
         for run in waiting:
-            yield run if run.status == "failed" else replace(run, written=written)
+            yield run if run.status == "failed" else replace(run, written=written, colors=colors)
 
 
 def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
@@ -61,7 +61,8 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
             source = _read(job)
             spread = histogram(source, threads=threads)
             offset = offset_of(source, job.offset)
-            source = moved_field(source, offset)
+            source = moved_field(source if job.holds_fields else replace(source, carried=()), offset)
+            check_colours(source, job)
         check_unit(job.options, source.unit)
         known = FieldFacts.of(source, spread)
         labels = label_count(source, spread)
@@ -89,7 +90,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                         findings = remeasured(findings, source, chosen.isovalue, whole, job.options)
                         del whole
                 with timer("write"):
-                    written = sink.write(surface, target)
+                    written, colors = sink.write(surface, target, chosen.isovalue)
                     write_ambiguities(source, chosen.isovalue, job, offset)
             except (IsocoreError, MemoryError) as error:
                 yield failed(job, target, error, seconds=timer.taken())
@@ -115,6 +116,8 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     backend=backend,
                     backend_chosen=why,
                     surface=measured,
+                    carried=carried_facts(surface, source),
+                    colors=colors,
                     findings=named(findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
@@ -172,6 +175,8 @@ def _asked(job: Job, target: Target) -> Asked:
             space=job.space,
             offset=None if job.offset is None else str(job.offset),
             ignore=job.read_options.ignore or None,
+            carry=job.read_options.carry or None,
+            merge_isovalues=(job.together and not any(isinstance(one.choice, Label) for one in job.targets)) or None,
         ),
     )
 

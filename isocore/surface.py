@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,8 @@ _COARSEST_STEP = 2.0**-11
 class Part:
     """A run of a surface's vertices and of its triangles, which name no others: a label, or all there is.
 
-    vertices, triangles: how many. colour: red, green, blue, 0 to 255. label: its number in a label map.
+    vertices, triangles: how many. colour: red, green, blue, 0 to 255. label: its number in a label map. isovalue: of
+    a part of several in one file.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Part:
     triangles: int
     colour: tuple[int, int, int] | None = None
     label: int | None = None
+    isovalue: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,6 +50,8 @@ class Surface:
     space, unit: as in Volume.
     offset: the point of the world that vertices are measured from; None is its origin.
     parts: what it is made of, one behind the other; () where nothing has a name or a colour.
+    fields: by name (v,) or (v, k) float32 or float64, values that were carried to the vertices.
+    colours: (v, 3) uint8 red, green, blue of each vertex, which go before those of parts; or None.
     """
 
     vertices: npt.NDArray[Any]
@@ -57,6 +61,8 @@ class Surface:
     unit: str = ""
     offset: Point | None = None
     parts: tuple[Part, ...] = ()
+    fields: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    colours: npt.NDArray[np.uint8] | None = None
 
     def __post_init__(self) -> None:
         real = self.vertices.dtype.name in ("float32", "float64")
@@ -70,31 +76,37 @@ class Surface:
         normals = self.normals
         if normals is not None and (normals.shape != self.vertices.shape or normals.dtype != np.float32):
             raise ValueError("normals must be (v, 3) float32")
-        for name in ("vertices", "triangles", "normals"):
+        for name, values in self.fields.items():
+            if len(values) != len(self.vertices) or values.ndim > 2 or values.dtype.name not in ("float32", "float64"):
+                raise ValueError(f"field {name!r} must be (v,) or (v, k) float32 or float64")
+        object.__setattr__(self, "fields", {name: _frozen(values) for name, values in self.fields.items()})
+        colours = self.colours
+        if colours is not None and (colours.shape != self.vertices.shape or colours.dtype != np.uint8):
+            raise ValueError("colours must be (v, 3) uint8")
+        for name in ("vertices", "triangles", "normals", "colours"):
             array = getattr(self, name)
             if array is not None:
-                array = np.ascontiguousarray(array)
-                array.flags.writeable = False
-                object.__setattr__(self, name, array)
+                object.__setattr__(self, name, _frozen(array))
 
     def __repr__(self) -> str:
         """How large it is, and what its coordinates mean."""
         counts = f"{len(self.vertices):,} vertices, {len(self.triangles):,} triangles"
         about = "" if self.offset is None else f", about {self.offset}"
         place = ", ".join(filter(None, (self.space, self.unit)))
-        return f"Surface({counts}{'' if self.normals is None else ', normals'}, {place}{about})"
+        more = ("normals",) * (self.normals is not None) + tuple(self.fields)
+        return f"Surface({', '.join((counts, *more))}, {place}{about})"
 
     def to_trimesh(self) -> trimesh.Trimesh:
-        """This surface as a trimesh.Trimesh, with its normals; needs `pip install trimesh`."""
-        return exchange.to_trimesh(self.world_vertices, self.triangles, self.normals, self._place)
+        """This surface as a trimesh.Trimesh, with its normals and fields; needs `pip install trimesh`."""
+        return exchange.to_trimesh(self.world_vertices, self.triangles, self.normals, self.fields, self._place)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """This surface as a pyvista.PolyData, with its normals as point data "Normals"; needs `pip install pyvista`."""
-        return exchange.to_pyvista(self.world_vertices, self.triangles, self.normals, self._place)
+        """As a pyvista.PolyData, with its normals ("Normals") and fields as point data; needs `pip install pyvista`."""
+        return exchange.to_pyvista(self.world_vertices, self.triangles, self.normals, self.fields, self._place)
 
     def to_meshio(self) -> meshio.Mesh:
-        """This surface as a meshio.Mesh, with its normals as point data "Normals"."""
-        return exchange.to_meshio(self.world_vertices, self.triangles, self.normals, self._place)
+        """This surface as a meshio.Mesh, with its normals ("Normals") and fields as point data."""
+        return exchange.to_meshio(self.world_vertices, self.triangles, self.normals, self.fields)
 
     @property
     def world_vertices(self) -> npt.NDArray[Any]:
@@ -118,7 +130,7 @@ class Surface:
         The only place where a mirrored affine swaps two corners of every triangle.
         """
         mirrored = np.linalg.det(affine[:3, :3]) < 0
-        return place_fresh(
+        placed = place_fresh(
             self.vertices,
             self.triangles.copy() if mirrored else self.triangles,
             None if self.normals is None else self.normals.copy(),
@@ -127,10 +139,17 @@ class Surface:
             unit=self.unit if unit is None else unit,
             threads=threads,
         )
+        return replace(placed, fields=self.fields) if self.fields else placed
+
+
+def _frozen(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    array = np.ascontiguousarray(array)
+    array.flags.writeable = False
+    return array
 
 
 def joined(surfaces: Sequence[Surface]) -> Surface:
-    """One surface of several, which share frame, unit and offset and each have parts. At least one."""
+    """One surface of several, which share frame, unit, offset and fields and each have parts. At least one."""
     first = surfaces[0]
     starts = np.cumsum([0, *(len(surface.vertices) for surface in surfaces[:-1])], dtype=np.int64)
     if sum(len(surface.vertices) for surface in surfaces) > np.iinfo(np.int32).max:
@@ -145,6 +164,7 @@ def joined(surfaces: Sequence[Surface]) -> Surface:
         first.unit,
         first.offset,
         tuple(part for surface in surfaces for part in surface.parts),
+        {name: np.concatenate([surface.fields[name] for surface in surfaces]) for name in first.fields},
     )
 
 

@@ -22,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore.arrays import samples_of
+from isocore.carried import CarriedField
 from isocore.digits import exact
 from isocore.errors import FieldError, OptionError, printable
 
@@ -33,6 +34,9 @@ _SIGNS: dict[str, tuple[int, int, int]] = {"ras": (1, 1, 1), "lps": (-1, -1, 1),
 #: The sample types the kernels read as stored; every other type is converted by its reader.
 SAMPLE_TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 
+
+#: How many more values along each axis than samples a carried field has.
+_GRIDS = {"points": 0, "cells": -1, "corners": 1}
 
 #: A volume is a product of three lengths, and has to be a number.
 FARTHEST = 1e100
@@ -50,6 +54,7 @@ class Volume:
     warnings: what the reader wants its user to know.
     ignored: how many samples are NaN because they were named as such.
     field_name: of the samples, in a file that names its fields.
+    carried: further fields on this grid, which surfaces get the values of.
     """
 
     samples: npt.NDArray[Any]
@@ -61,6 +66,7 @@ class Volume:
     warnings: tuple[str, ...] = ()
     ignored: int = 0
     field_name: str = ""
+    carried: tuple[CarriedField, ...] = ()
 
     @classmethod
     def from_array(
@@ -127,6 +133,9 @@ class Volume:
             voxel = abs(np.linalg.det(affine[:3, :3]))
         if not voxel >= 1e-30:
             raise FieldError("the affine is singular: an axis has no length or two axes coincide")
+        sizes = {of: math.prod(n + more for n in samples.shape) for of, more in _GRIDS.items()}
+        for field in self.carried:
+            field.check(sizes)
         affine.flags.writeable = False
         samples.flags.writeable = False
         object.__setattr__(self, "affine", affine)

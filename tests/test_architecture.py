@@ -16,8 +16,8 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "digits", "choices", "labels", "piece_sizes"} | {
-    "volume", "cell_mesh", "surface", "job", "extraction", "measurements"
+NOUNS = {"errors", "version", "digits", "choices", "colormaps", "labels", "piece_sizes"} | {
+    "volume", "cell_mesh", "carried", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
 FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "remarks", "segmentation"}
@@ -35,21 +35,23 @@ MAY_IMPORT: dict[str, set[str]] = {
     "errors": set(),
     "version": set(),
     "digits": set(),
+    "colormaps": {"errors"},
     "choices": {"digits", "errors", "labels"},
     "labels": {"errors"},
     "piece_sizes": {"choices", "errors"},
     "whole_file": {"errors"},
     "arrays": {"errors"},
-    "volume": {"arrays", "digits", "errors"},
-    "cell_mesh": {"errors"},
+    "volume": {"arrays", "carried", "digits", "errors"},
+    "cell_mesh": {"carried", "errors"},
+    "carried": {"errors"},
     "memory": set(),
     "surface": {"exchange", "volume"} | KERNELS,
     "measurements": {"surface"} | KERNELS,
     "requirements": {"measurements"},
-    "job": {"choices", "errors", "piece_sizes", "readers/options", "volume"},
+    "job": {"choices", "errors", "labels", "piece_sizes", "readers/options", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
-    "readers": {"arrays", "digits", "errors", "volume", "cell_mesh"} | KERNELS,
+    "readers": {"arrays", "digits", "errors", "volume", "cell_mesh", "carried"} | KERNELS,
     "readers/options": set(),
     "apart": KERNELS,
     "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,
@@ -57,7 +59,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "segmentation": {"labels", "digits", "extraction", "histogram", "isovalue", "volume"},
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
-    "writers": {"choices", "errors", "surface", "volume", "whole_file"} | KERNELS,
+    "writers": {"choices", "colormaps", "errors", "surface", "volume", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
     | {"digits", "writers/read_back"}
     | KERNELS,

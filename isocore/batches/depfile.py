@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from isocore.job import STDOUT, Job
-from isocore.readers import files_of
+from isocore.readers import carried_files, files_of
 
 #: What cannot be quoted: ends of lines, tabs, starts of a recipe or an assignment, patterns; a backslash at the end.
 _UNSPEAKABLE = re.compile(r"[\x00-\x1f\x7f;=|%]|\\$")
@@ -28,7 +28,7 @@ def depfile_text(jobs: Iterable[Job]) -> tuple[str, list[Path]]:
     for job in jobs:
         if job.refusal:
             continue
-        files = files_of(job.source, job.read_options.step)
+        files = (*files_of(job.source, job.read_options.step), *carried_files(job.read_options))
         outputs = dict.fromkeys(target.output for target in job.targets if target.output != STDOUT)
         left_out |= dict.fromkeys(path for path in (*files, *outputs) if _UNSPEAKABLE.search(str(path)))
         made, needed = ([_quoted(path) for path in paths if path not in left_out] for paths in (outputs, files))

@@ -18,7 +18,7 @@ from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
 from isocore.errors import OptionError, told
 from isocore.job import STDOUT, Job, Target
-from isocore.readers import ReadOptions, count_volumes, files_of, times_of
+from isocore.readers import ReadOptions, carried_files, count_volumes, files_of, times_of
 
 #: An option that names a file, and the file.
 Named = tuple[str, Path]
@@ -141,6 +141,8 @@ def refuse_overwriting(jobs: Iterable[Job], *, written: Sequence[Named] = (), re
     places = Places()
     for option, path in read:
         places.take(path, f"is what {option} reads")
+    for file in {file: None for job in jobs for file in carried_files(job.read_options)}:
+        places.take(file, "is what --carry reads")
     for job in {job.source: job for job in jobs}.values():
         for n, file in enumerate(files_of(job.source)):
             places.take(file, f"belongs to the input {job.source}" if n else "is also an input")

@@ -16,7 +16,7 @@ from typing import Any
 from isocore.errors import IsocoreError
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
-from isocore.readers import files_of
+from isocore.readers import carried_files, files_of
 from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.record import RunReport
 from isocore.report.schema import built, parsed
@@ -75,7 +75,7 @@ def input_hash(job: Job) -> str:
     if job.read_options.step is not None:
         files = files[1:]
     try:
-        for path in files or (job.source,):
+        for path in (*(files or (job.source,)), *carried_files(job.read_options)):
             whole.update(bytes.fromhex(_file_hash(path)))
     except OSError:
         return ""

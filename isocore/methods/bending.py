@@ -18,6 +18,13 @@ from isocore.cell_mesh import CellMesh, CurvedCells
 _CLAMP = 2.0**-10  # as in kernels/common/crossing.hpp
 _NODES = 1 << 20  # values of nodes that are gathered at a time
 
+#: (n,) vertices, and (n, k) values there.
+_Values = tuple[npt.NDArray[np.intp], npt.NDArray[np.float64]]
+#: Weights (n, L) and nodes (n, L) whose sum is the value half way along each edge.
+_HalfWay = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
+#: By the name of a carried field of points: the vertices that were moved, and its values there.
+Curved = dict[str, _Values]
+
 
 def bend(
     mesh: CellMesh,
@@ -25,13 +32,14 @@ def bend(
     vertices: npt.NDArray[Any],
     triangles: npt.NDArray[np.int32],
     isovalue: float,
-) -> npt.NDArray[Any]:
-    """(v, 3) the vertices on edges of divided cells moved along them, the others as they are.
+) -> tuple[npt.NDArray[Any], Curved]:
+    """(v, 3) the vertices on edges of divided cells moved along them, the others as they are; carried values there.
 
     edges: (e, 2) points of the mesh, ascending, of the first e vertices; those behind lie in the middle of a loop.
     """
+    curved: dict[str, list[_Values]] = {}
     if not len(edges):
-        return vertices
+        return vertices, {}
     keys = edges[:, 0].astype(np.int64) * len(mesh.points) + edges[:, 1]
     order = np.argsort(keys, kind="stable")
     moved = vertices.astype(np.float64)
@@ -39,9 +47,10 @@ def bend(
     for cells in mesh.curved:
         step = max(1, _NODES // cells.nodes.shape[1])
         for first in range(0, len(cells.nodes), step):
-            _bend_some(mesh, cells, cells.nodes[first : first + step], isovalue, (keys[order], order, left), moved)
+            some = cells.nodes[first : first + step]
+            _bend_some(mesh, cells, some, isovalue, (keys[order], order, left), moved, curved)
     _follow(moved, vertices, triangles, len(edges))
-    return moved.astype(vertices.dtype)
+    return moved.astype(vertices.dtype), {name: _whole(parts) for name, parts in curved.items()}
 
 
 def _bend_some(
@@ -51,6 +60,7 @@ def _bend_some(
     isovalue: float,
     search: tuple[npt.NDArray[np.int64], npt.NDArray[np.intp], npt.NDArray[np.bool_]],
     moved: npt.NDArray[np.float64],
+    curved: dict[str, list[_Values]],
 ) -> None:
     """search: keys of edges, ascending; the vertex of each; which vertices no cell has moved so far."""
     inside = mesh.values[nodes] >= isovalue
@@ -70,19 +80,25 @@ def _bend_some(
         chosen = found[first : first + step]
         vertex = order[place[chosen]]
         weights, around = cells.weights[pair[chosen]], some[cell[chosen]]
-        at = _crossing(mesh, ends[chosen], (weights, around), isovalue)
+        share = _crossing(mesh, ends[chosen], (weights, around), isovalue)
+        at = _parabola(mesh.points, ends[chosen], (weights, around), share)
         sound = np.isfinite(at).all(axis=1)
         moved[vertex[sound]] = at[sound]
+        for carried in mesh.carried:
+            if carried.of == "points":
+                nodal = carried.values.reshape(len(mesh.points), -1)
+                values = _parabola(nodal, ends[chosen], (weights, around), share)
+                curved.setdefault(carried.name, []).append((vertex[sound], values[sound]))
         left[vertex] = False
 
 
 def _crossing(
     mesh: CellMesh,
     ends: npt.NDArray[np.int32],
-    half_way: tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]],
+    half_way: _HalfWay,
     isovalue: float,
 ) -> npt.NDArray[np.float64]:
-    """(n, 3) where the parabola of the values reaches the isovalue; not finite where one of the values is not."""
+    """(n, 1) how far along the edge the parabola of the values reaches the isovalue; NaN where one is no number."""
     weights, around = half_way
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         a, c = (mesh.values[ends[:, n]].astype(np.float64) - isovalue for n in (0, 1))
@@ -93,10 +109,22 @@ def _crossing(
         summed = -0.5 * (linear + np.copysign(root, linear))
         first, second = a / summed, summed / square
         t = np.where((first >= 0) & (first <= 1), first, second)
-    t = np.clip(np.where((t >= 0) & (t <= 1), t, a / (a - c)), _CLAMP, 1 - _CLAMP)[:, None]
-    start, end = mesh.points[ends[:, 0]], mesh.points[ends[:, 1]]
-    middle = np.einsum("nl,nlx->nx", weights, mesh.points[around])
-    return np.asarray(start + t * (4 * middle - 3 * start - end) + t * t * (2 * (start + end) - 4 * middle))
+    return np.asarray(np.clip(np.where((t >= 0) & (t <= 1), t, a / (a - c)), _CLAMP, 1 - _CLAMP)[:, None])
+
+
+def _parabola(
+    nodal: npt.NDArray[Any], ends: npt.NDArray[np.int32], half_way: _HalfWay, share: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    """(n, k) at `share` (n, 1) of the way along each edge. nodal: (p, k), of the mesh's points."""
+    weights, around = half_way
+    start, end = (nodal[ends[:, n]].astype(np.float64) for n in (0, 1))
+    middle = np.einsum("nl,nlx->nx", weights, nodal[around])
+    along = start + share * (4 * middle - 3 * start - end)
+    return np.asarray(along + share * share * (2 * (start + end) - 4 * middle))
+
+
+def _whole(parts: list[_Values]) -> _Values:
+    return np.concatenate([rows for rows, _ in parts]), np.concatenate([values for _, values in parts])
 
 
 def _follow(

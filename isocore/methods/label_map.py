@@ -17,6 +17,7 @@ from isocore.errors import FieldError
 from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts, Outlook
 from isocore.job import Options
 from isocore.labels import MOST_LABELS, Label
+from isocore.methods.carrying import volume_fields
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
@@ -48,6 +49,7 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
         start = perf_counter()
         normals = _kernels.triangle_normals(vertices, triangles) if options.normals else None
         seconds = perf_counter() - start
+        fields = volume_fields(volume, vertices)
         surface = place_fresh(
             vertices,
             triangles,
@@ -57,6 +59,7 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
             unit=volume.unit,
             threads=options.threads,
         )
+        surface = replace(surface, fields=fields) if fields else surface
         voxels = count_of.get(label, 0)
         facts = LabelFacts(
             value=label, voxels=voxels, voxel_volume=voxels * voxel, neighbours=neighbours.get(label, ())

@@ -13,7 +13,8 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.extraction import Extract, Extraction, Findings, Search
 from isocore.job import Options
-from isocore.methods.bending import bend
+from isocore.methods.bending import Curved, bend
+from isocore.methods.carrying import mesh_fields
 from isocore.methods.normals import mesh_normals
 from isocore.methods.simplifying import Simplifier, mesh_simplifier
 from isocore.surface import Point, Surface
@@ -42,8 +43,8 @@ def prepare_marching_cells(mesh: CellMesh, options: Options) -> Extract:
 
 
 def needs_edges(mesh: CellMesh, options: Options, simplify: Simplifier | None) -> bool:
-    """Is the edge that each vertex lies on asked of the kernel? For normals and angles, and to follow curved cells."""
-    return bool(options.normals or mesh.curved or simplify)
+    """Is each vertex' edge asked of the kernel? For normals, angles, carried fields, and to follow curved cells."""
+    return bool(options.normals or mesh.curved or mesh.carried or simplify)
 
 
 def mesh_warnings(options: Options) -> tuple[str, ...]:
@@ -77,17 +78,20 @@ def mesh_surface(
 ) -> Extraction:
     """What becomes of a kernel's mesh, which lies in the world already: bent, and simplified if that is asked for."""
     vertices, triangles, edges = found.vertices, found.triangles, found.edges
+    curved: Curved = {}
     if mesh.curved:
-        vertices = bend(mesh, edges, vertices, triangles, isovalue)
+        vertices, curved = bend(mesh, edges, vertices, triangles, isovalue)
+    fields = mesh_fields(mesh, edges, triangles, len(vertices), isovalue, curved) if mesh.carried else {}
     if simplify is not None:
         fewer = simplify((vertices, triangles))
         vertices, triangles, warnings = fewer.vertices, fewer.triangles, (*warnings, *fewer.warnings)
         edges = edges[fewer.kept[fewer.kept < len(edges)]]  # vertices without an edge come last, and keep their order
+        fields = {name: values[fewer.kept] for name, values in fields.items()}
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
     surface = (vertices, triangles)
     error = findings.error
     normals = mesh_normals(mesh, isovalue, edges, surface, options, measured=error is not None)
     if error is not None:
         findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
-    drawn = Surface(*surface, normals.vertices, unit=mesh.unit)
+    drawn = Surface(*surface, normals.vertices, unit=mesh.unit, fields=fields)
     return Extraction(drawn, findings, warnings, normals.seconds, normals.seconds_degrees)

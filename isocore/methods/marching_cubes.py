@@ -14,6 +14,7 @@ from isocore.choices import TOPOLOGIES
 from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
+from isocore.methods.carrying import volume_fields
 from isocore.methods.marching_cells import prepare_marching_cells
 from isocore.methods.normals import volume_normals
 from isocore.methods.simplifying import Mesh, Simplifier, volume_simplifier
@@ -78,7 +79,9 @@ def placed(
     normals = volume_normals(volume, mesh, options, measured=error is not None)
     if error is not None:
         findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
+    fields = volume_fields(volume, mesh[0])
     surface = place_fresh(
         *mesh, normals.vertices, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
     )
+    surface = replace(surface, fields=fields) if fields else surface
     return Extraction(surface, findings, warnings, normals.seconds, normals.seconds_degrees)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from isocore.errors import InputError, IsocoreError, about, reading
+from isocore.readers.carried_volumes import carried_files, with_carried
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.ignored import without_ignored
 from isocore.readers.options import ReadOptions
@@ -44,6 +45,8 @@ def read(path: os.PathLike[str] | str, options: ReadOptions | None = None) -> Fi
         field, remark = _used(Path(path), lambda form: form.read(Path(path), options))
         if remark:
             field = replace(field, warnings=(remark, *field.warnings))
+        if options.carry and isinstance(field, Volume):
+            field = with_carried(field, Path(path), options, count_volumes, read)
         return without_ignored(field, options.ignore) if options.ignore and isinstance(field, Volume) else field
 
 
@@ -162,6 +165,7 @@ def _stranger(path: Path, error: IsocoreError) -> str | None:
 __all__ = [
     "SEARCHED",
     "ReadOptions",
+    "carried_files",
     "content_bytes",
     "count_volumes",
     "files_of",

@@ -26,6 +26,8 @@ class ReadOptions:
     step: which step of a series, counted from 0 in the order of their times; None where the file is none.
     field, component: VTU, which point field and which part of it ("0", "1", ... or "magnitude").
     mesh: how cells hang together.
+    carry: further fields that the field carries: of a VTK file by name, "all" of them; for a volume also files, each
+        with a volume on the same grid.
     ignore: values, scaled, whose samples count as outside, as NaN does.
     shape, dtype, spacing, origin, byte_order, offset: raw files; they go before those of a sidecar.
     """
@@ -36,6 +38,7 @@ class ReadOptions:
     component: str | None = None
     mesh: MeshOptions = MeshOptions()
     ignore: tuple[float, ...] = ()
+    carry: tuple[str, ...] = ()
     shape: tuple[int, ...] | None = None
     dtype: str | None = None
     spacing: tuple[float, ...] | None = None

@@ -7,7 +7,7 @@ made in vtk_mesh.py, which joins the points where they meet.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from isocore.cell_mesh import CellMesh
 from isocore.errors import FieldError, reading
 from isocore.readers.listing import beside, elements, refuse_missing
 from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_carried import carried_fields
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
 from isocore.readers.vtk_pieces import PieceData
@@ -59,10 +60,11 @@ class PiecesSource:
         names = ", ".join(self.partial[:_NAMED])
         return (f"its pieces hold different fields; {names}{more} cannot be chosen, since not all of them hold it",)
 
-    def pieces(self, field: FieldInfo) -> Iterator[PieceData]:
+    def pieces(self, field: FieldInfo, carried: Sequence[FieldInfo] = ()) -> Iterator[PieceData]:
+        """Those of each file in turn."""
         for file in self.files:
             with reading(file):
-                yield from open_vtu(os.fspath(file)).pieces(field)
+                yield from open_vtu(os.fspath(file)).pieces(field, carried)
 
 
 def read_pvtu(path: Path, options: ReadOptions) -> CellMesh:
@@ -75,7 +77,9 @@ def read_pieces(source: PiecesSource, options: ReadOptions) -> CellMesh:
     """The mesh of some VTU files."""
     field = choose(source.path, source.fields, options)
     component = component_of(source.path, field, options.component)
-    mesh = assembled(source.path, source.pieces(field), field, component, options.mesh, options.ignore)
+    carried = carried_fields(source.path, source.fields, field, options.carry)
+    pieces = source.pieces(field, carried)
+    mesh = assembled(source.path, pieces, field, component, options.mesh, options.ignore, carried)
     return replace(mesh, warnings=source.warnings + mesh.warnings)
 
 

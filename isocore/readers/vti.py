@@ -9,9 +9,10 @@ from pathlib import Path
 from isocore.errors import FieldError, InputError, reading
 from isocore.readers.listing import beside, elements, refuse_missing
 from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_carried import carried_fields
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_ghosts import GHOST_TYPE
-from isocore.readers.vtk_images import Image, Samples, image_volume
+from isocore.readers.vtk_images import Image, Samples, image_volume, with_fields
 from isocore.readers.vtu_arrays import DTYPES
 from isocore.readers.vtu_layout import IMAGE, extent_of
 from isocore.readers.vtu_opening import opened
@@ -60,7 +61,9 @@ def read_vti(path: Path, options: ReadOptions) -> Volume:
         file = ImageFile(path)
         field = choose(file.path, file.fields, options)
         component = component_of(file.path, field, options.component)
-        return image_volume(file.path, file.image, file.samples(field), field, component)
+        carried = carried_fields(file.path, file.fields, field, options.carry, files=True)
+        volume = image_volume(file.path, file.image, file.samples(field), field, component)
+        return with_fields(file.path, volume, file.image, field, [(one, file.samples(one)) for one in carried])
 
 
 def vti_fields(path: Path) -> tuple[FieldInfo, ...]:
@@ -75,10 +78,16 @@ def read_pvti(path: Path, options: ReadOptions) -> Volume:
     with reading(path):
         image, files = _pieces(path)
         refuse_missing(name, files, "pieces")
-        field = choose(name, ImageFile(files[0]).fields, options)
+        fields = ImageFile(files[0]).fields
+        field = choose(name, fields, options)
         component = component_of(name, field, options.component)
-        parts = (part for file in files for part in ImageFile(file).samples(field))
-        return image_volume(name, image, parts, field, component)
+        carried = carried_fields(name, fields, field, options.carry, files=True)
+
+        def parts(one: FieldInfo) -> Iterator[Samples]:
+            return (part for file in files for part in ImageFile(file).samples(one))
+
+        volume = image_volume(name, image, parts(field), field, component)
+        return with_fields(name, volume, image, field, [(one, parts(one)) for one in carried])
 
 
 def pvti_fields(path: Path) -> tuple[FieldInfo, ...]:

@@ -23,6 +23,7 @@ from isocore.readers.vtk_templates import Template, template
 from isocore.readers.vtk_types import Shape
 
 Ids = npt.NDArray[np.int32]
+Source = tuple[Ids, npt.NDArray[np.intp] | slice, npt.NDArray[np.intp] | None]
 #: Cells of more nodes are divided too, but their surfaces' vertices are not moved onto the curve of their edges.
 _MOST_NODES = 512
 _MOST_CONTROL_POINTS = 2048
@@ -35,7 +36,9 @@ class Divided:
     """Straight cells and the points they hang on.
 
     points: (n, 3); values: (n,); those of the file first. cells: (m, k) point numbers by shape.
-    curved: the cells that were divided. left: cells read by their corners since no degree fits them, by name.
+    curved: the cells that were divided. blocks: all of them as they were given. sources: of some cells all their
+    points, which cells of the file they are, and of divided ones which two of their points an edge may join.
+    left: cells read by their corners since no degree fits them, by name.
     """
 
     points: npt.NDArray[np.float64]
@@ -43,6 +46,8 @@ class Divided:
     cells: dict[Shape, list[Ids]] = field(default_factory=lambda: {"tet": [], "hex": [], "wedge": [], "pyramid": []})
     curved: list[CurvedCells] = field(default_factory=list)
     left: Counter[str] = field(default_factory=Counter)
+    blocks: list[Block] = field(default_factory=list)
+    sources: list[Source] = field(default_factory=list)
 
 
 def divided(
@@ -53,7 +58,7 @@ def divided(
     weights: npt.NDArray[Any] | None = None,
 ) -> Divided:
     """All cells of `blocks` as straight ones. weights: (n,) of rational Bezier cells' control points."""
-    result = Divided(points, values)
+    result = Divided(points, values, blocks=blocks)
     curved: list[tuple[Block, Template]] = []
     for block in blocks:
         if block.kind.nodes > _MOST_POINTS:
@@ -63,7 +68,9 @@ def divided(
             )
         form = None if block.kind.straight else template(block.number, block.kind.nodes, block.degrees, block.old)
         if form is None or block.kind.straight:
-            result.cells[block.kind.shape].append(np.ascontiguousarray(block.corners))
+            corners = np.ascontiguousarray(block.corners)
+            result.cells[block.kind.shape].append(corners)
+            result.sources.append((corners, block.numbers, None))
             if not block.kind.straight:
                 result.left[block.kind.name] += len(block.cells)
         else:
@@ -72,8 +79,9 @@ def divided(
         for block, form in curved:
             if block.bezier:
                 _evaluate(path, block, form, result, weights)
-        for form, nodes in _completed(curved, result):
+        for (block, _), (form, nodes) in zip(curved, _completed(curved, result), strict=True):
             _cut(form, nodes, result)
+            result.sources.append((nodes, block.numbers, _pairs(form)))
     return result
 
 
@@ -174,10 +182,15 @@ def _halved(octahedra: Ids, points: npt.NDArray[np.float64]) -> Ids:
     return found.reshape(-1, 4)
 
 
-def _curve(form: Template, nodes: Ids) -> CurvedCells:
-    """What the surface needs to know of the cells: how value and place run between any two nodes of a straight one."""
+def _pairs(form: Template) -> npt.NDArray[np.intp]:
+    """(e, 2) nodes of a cell that an edge of a straight one may join, ascending, each once."""
     straight = [*form.cells.values(), form.octahedra]
     pairs = np.concatenate([cells[:, (a, b)] for cells in straight for a in range(cells.shape[1]) for b in range(a)])
-    pairs = np.unique(np.sort(pairs, axis=1), axis=0)
+    return np.unique(np.sort(pairs, axis=1), axis=0)
+
+
+def _curve(form: Template, nodes: Ids) -> CurvedCells:
+    """What the surface needs to know of the cells: how value and place run between any two nodes of a straight one."""
+    pairs = _pairs(form)
     middles = form.at[pairs].mean(axis=1)
     return CurvedCells(nodes, pairs, values_at(form.shape, form.degrees, form.at, middles))

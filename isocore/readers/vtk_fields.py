@@ -46,7 +46,7 @@ def choose(path: str, fields: Sequence[FieldInfo], options: FieldChoice) -> Fiel
     if options.field is not None:
         chosen = [field for field in fields if field.name == options.field]
         if not chosen:
-            raise OptionError(f"{path}: has no field {options.field!r}; {_offer(fields)}")
+            raise OptionError(f"{path}: has no field {options.field!r}; {offer(fields)}")
         field = min(chosen, key=lambda found: found.of != "points")
     else:
         useful = [field for field in fields if field.name not in BOOKKEEPING]
@@ -64,7 +64,8 @@ def choose(path: str, fields: Sequence[FieldInfo], options: FieldChoice) -> Fiel
     return field
 
 
-def _offer(fields: Sequence[FieldInfo]) -> str:
+def offer(fields: Sequence[FieldInfo]) -> str:
+    """What a file holds, for a message."""
     of_points = [f.name for f in fields if f.of == "points"]
     of_cells = [f.name for f in fields if f.of == "cells"]
     offers = [
@@ -106,6 +107,13 @@ def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> 
         return np.array(column, dtype=column.dtype.newbyteorder("="))
     largest = max(int(column.max()), -int(column.min())) if len(column) else 0
     return column.astype(np.float32 if largest <= _EXACT_IN_FLOAT32 else np.float64)
+
+
+def columns(values: npt.NDArray[Any], field: FieldInfo) -> npt.NDArray[Any]:
+    """(n, k) of a file's flat values, native; those of points as floating point, since joining may average them."""
+    if field.of == "cells":
+        return values.reshape(-1, field.components).astype(values.dtype.newbyteorder("="))
+    return np.stack([scalar(values, field.components, n) for n in range(field.components)], axis=1)
 
 
 def magnitudes(tuples: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:

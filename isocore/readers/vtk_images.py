@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, prod
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from isocore.carried import CarriedField, distinct_names
 from isocore.errors import FieldError, InputError
 from isocore.readers.sample_types import contourable
 from isocore.readers.vtk_fields import FieldInfo, magnitudes
 from isocore.readers.vtk_ghosts import HIDDEN_CELL, HIDDEN_POINT
 from isocore.readers.vtu_layout import Extent
 from isocore.volume import Volume
+
+#: Where carried values lie among the samples, by what they and the samples are of.
+_PLACES: dict[tuple[str, str], Literal["points", "cells", "corners"]] = {
+    ("points", "points"): "points",
+    ("cells", "points"): "cells",
+    ("cells", "cells"): "points",
+    ("points", "cells"): "corners",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +73,23 @@ def image_volume(
     if count := sum(int(np.count_nonzero(part.hidden)) for part in found):
         warnings += (f"{count:,} samples are marked as hidden; they count as outside, as NaN does",)
     return Volume(samples, affine=_affine(path, image, cells), warnings=warnings, field_name=field.name)
+
+
+def with_fields(
+    path: str, volume: Volume, image: Image, field: FieldInfo, carried: Iterable[tuple[FieldInfo, Iterable[Samples]]]
+) -> Volume:
+    """The volume of `field`, which carries these fields, each with all its parts. Raises as image_volume does."""
+    found = []
+    for info, parts in carried:
+        several, cells = list(parts), info.of == "cells"
+        shape = sizes(image.extent, cells=cells)
+        columns = []
+        for component in range(info.components):
+            whole = _whole(path, image, [_part(path, part, info, component) for part in several], shape, cells)
+            columns.append(whole.reshape(-1, order="F"))
+        values = columns[0] if info.components == 1 else np.stack(columns, axis=1)
+        found.append(CarriedField(info.name, values, _PLACES[info.of, field.of]))
+    return replace(volume, carried=distinct_names(found)) if found else volume
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,10 @@ import numpy.typing as npt
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, reading
 from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_carried import carried_fields
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_ghosts import GHOST_TYPE, OF_CELLS
-from isocore.readers.vtk_images import Image, Samples, image_volume
+from isocore.readers.vtk_images import Image, Samples, image_volume, with_fields
 from isocore.readers.vtk_legacy_arrays import TYPES, Cursor
 from isocore.readers.vtk_legacy_cells import cells_of, grid_cells, refuse_flat
 from isocore.readers.vtk_legacy_sections import Sections, sections
@@ -65,8 +66,8 @@ class LegacyFile:
         arrays = self.parts.of_points if field.of == "points" else self.parts.of_cells
         return self.cursor.read(arrays[field.name][0])
 
-    def piece(self, field: FieldInfo) -> PieceData:
-        """The mesh."""
+    def piece(self, field: FieldInfo, carried: Sequence[FieldInfo] = ()) -> PieceData:
+        """The mesh, with the values of `field` and of `carried`."""
         parts, read = self.parts, self.cursor.read
         if parts.kind == "UNSTRUCTURED_GRID":
             cells = cells_of(self.cursor, parts)
@@ -87,6 +88,7 @@ class LegacyFile:
             degrees=self._degrees(),
             weights=read(parts.of_points["RationalWeights"][0]) if "RationalWeights" in parts.of_points else None,
             old=self.version < (5, 1),
+            carried=tuple(self.values(one) for one in carried),
         )
 
     def _degrees(self) -> npt.NDArray[Any] | None:
@@ -122,9 +124,13 @@ def read_legacy(path: Path, options: ReadOptions) -> Volume | CellMesh:
         file = LegacyFile(path)
         field = choose(file.path, file.fields, options)
         component = component_of(file.path, field, options.component)
-        if file.parts.kind == "STRUCTURED_POINTS":
-            return image_volume(file.path, file.image, file.samples(field), field, component)
-        return assembled(file.path, [file.piece(field)], field, component, options.mesh, options.ignore)
+        is_image = file.parts.kind == "STRUCTURED_POINTS"
+        carried = carried_fields(file.path, file.fields, field, options.carry, files=is_image)
+        if is_image:
+            volume = image_volume(file.path, file.image, file.samples(field), field, component)
+            return with_fields(file.path, volume, file.image, field, [(one, file.samples(one)) for one in carried])
+        pieces = [file.piece(field, carried)]
+        return assembled(file.path, pieces, field, component, options.mesh, options.ignore, carried)
 
 
 def legacy_fields(path: Path) -> tuple[FieldInfo, ...]:

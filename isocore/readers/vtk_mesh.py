@@ -7,7 +7,7 @@ left out first, then points that coincide are joined, then cells are split.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,6 +20,7 @@ from isocore.errors import FieldError
 from isocore.readers.cell_splitting import SplitCells, split_cells
 from isocore.readers.ignored import values_without_ignored
 from isocore.readers.options import MeshOptions
+from isocore.readers.vtk_carried import carried_by, discontinuities, joined_carried
 from isocore.readers.vtk_cells import by_corners
 from isocore.readers.vtk_centres import SplitFaces, split_at_centres
 from isocore.readers.vtk_division import Divided, divided
@@ -37,31 +38,35 @@ def assembled(
     component: int | None,
     options: MeshOptions = MeshOptions(),  # noqa: B008
     ignore: tuple[float, ...] = (),
+    carried: Sequence[FieldInfo] = (),
 ) -> CellMesh:
     """One mesh of all pieces, with one value per point; component None is the magnitude of `field`.
 
-    ignore: values that become NaN before anything is averaged.
+    ignore: values that become NaN before anything is averaged. carried: the fields that each piece has besides.
 
     Raises InputError where the arrays contradict each other, FieldError where they cannot be contoured; each
     message starts with `path`.
     """
-    parts = [checked(path, piece, field, component) for piece in pieces]
+    parts = [checked(path, piece, field, component, carried) for piece in pieces]
     before = sum(_not_finite(part.values) for part in parts)
     kept, missing = values_without_ignored([part.values for part in parts], ignore)
     parts = [replace(part, values=values) for part, values in zip(parts, kept, strict=True)]
     counts = sum((Counter(part.counts) for part in parts), Counter[int]())
     ghosts = sum(part.ghosts for part in parts)
     warnings = cell_warnings(path, counts, ghosts)
-    whole, found = _hung_together(together(path, parts), field, options, (ghosts, len(parts)))
+    whole, found, differing = _hung_together(together(path, parts), field, options, (ghosts, len(parts)))
     blocks = [by_corners(block) for block in whole.blocks] if options.corners else whole.blocks
     shapes = divided(path, blocks, whole.points, whole.values, whole.weights)
-    points, values, split, turned = _split(path, whole, shapes)
+    points, values, split, centred = _split(path, whole, shapes)
+    turned = sum(each.turned for each in centred), next((each.first for each in centred if each.turned), -1)
     warnings += corner_warnings(whole.blocks, shapes.left, options.corners)
     warnings += splitting_warnings(counts, split, turned)
     if not len(split.tets) and not len(split.hexes):
         raise FieldError(f"{path}: each of its {split.collapsed:,} cells is collapsed to nothing; write it again")
     found = replace(found, divided_cells=sum(len(cells.nodes) for cells in shapes.curved))
     warnings += joining_warnings(found, field, options.merge_points)
+    warnings += discontinuities(carried, differing)
+    fields, sources = carried_by(path, whole, carried, shapes, centred)
     if len(parts) > 1 and options.keep_duplicates:
         warnings.append(f"the points of {len(parts)} pieces were not joined: the surface has seams there")
     if field.of == "cells":
@@ -83,6 +88,8 @@ def assembled(
         connectivity=found,
         curved=tuple(shapes.curved),
         ignored=ignored,
+        carried=fields,
+        sources=sources,
     )
 
 
@@ -92,11 +99,15 @@ def _not_finite(values: npt.NDArray[Any]) -> int:
 
 def _hung_together(
     part: Part, field: FieldInfo, options: MeshOptions, counts: tuple[int, int]
-) -> tuple[Part, Connectivity]:
-    """Points that coincide are joined, and each has one value. counts: ghosts, and pieces, which may share cells."""
+) -> tuple[Part, Connectivity, list[tuple[int, float]]]:
+    """Points that coincide are joined, and each has one value; of carried fields how many differed there, how much.
+
+    counts: ghosts, and pieces, which may share cells.
+    """
     of_cells = field.of == "cells"
     by = None if options.keep_duplicates else joining(part.points, options.merge_points or 0.0)
     joined, differing, largest, twice = 0, 0, 0.0, 0
+    apart = [(0, 0.0)] * len(part.carried)
     if by is not None:
         joined = by.joined
         values = part.values
@@ -104,18 +115,21 @@ def _hung_together(
             found = joined_values(by, part.values, used_points(part))
             values, differing, largest = found.values, found.differing, found.largest
         weights = None if part.weights is None else part.weights[by.first]
+        carried, apart = joined_carried(part, by)
         part = replace(renumbered(part, by.number), points=part.points[by.first], values=values, weights=weights)
+        part = replace(part, carried=carried)
         if counts[1] > 1:
             part, twice = _once(part, by)
     if of_cells:
         part = replace(part, values=_at_points(part))
-    return part, Connectivity(
+    hung = Connectivity(
         ghost_cells=counts[0],
         repeated_cells=twice,
         joined_points=joined,
         averaged_points=differing,
         largest_difference=largest,
     )
+    return part, hung, apart
 
 
 def _once(part: Part, by: Joining) -> tuple[Part, int]:
@@ -144,8 +158,8 @@ def _at_points(part: Part) -> npt.NDArray[Any]:
 
 def _split(
     path: str, part: Part, shapes: Divided
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[Any], SplitCells, tuple[int, int]]:
-    """Points, values, and cells as tetrahedra and hexahedra; how many list faces inside out, and the first of them."""
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[Any], SplitCells, list[SplitFaces]]:
+    """Points, values, and cells as tetrahedra and hexahedra; what became of those that are split at their centre."""
     centred: list[SplitFaces] = []
     count = len(shapes.points)
     for faces in part.faces:
@@ -158,12 +172,11 @@ def _split(
     )
     tets = _one([tets, *(split.tets for split in centred)])
     quads = _one([np.empty((0, 4), np.int32), *(split.quads for split in centred)])
-    turned = [split for split in centred if split.turned]
     return (
         _one([shapes.points, *(split.centres for split in centred)]),
         _one([shapes.values, *(split.values for split in centred)]),
         split_cells(tets, hexes, wedges, pyramids, quads),
-        (sum(split.turned for split in turned), turned[0].first if turned else -1),
+        centred,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from isocore.errors import FieldError, InputError
 from isocore.readers.vtk_cells import Block, CellArrays, blocks, count_cells
 from isocore.readers.vtk_convex import CONVEX_SET, convex_sets
 from isocore.readers.vtk_faces import Faces, prisms, ragged
-from isocore.readers.vtk_fields import FieldInfo, scalar
+from isocore.readers.vtk_fields import FieldInfo, columns, scalar
 from isocore.readers.vtk_ghosts import cells_at, ghost_cells, hidden_points
 from isocore.readers.vtk_polyhedra import POLYHEDRON, FaceLists, polyhedra
 from isocore.readers.vtk_types import FACETED
@@ -25,7 +26,7 @@ class PieceData:
 
     points: (n, 3), any number type. types, offsets: (c,) integers of each cell, offsets where it ends.
     connectivity: point numbers of all cells, one cell after the other.
-    values: flat, the components of each point, or of each cell, together.
+    values: flat, the components of each point, or of each cell, together. carried: further fields, alike.
     ghosts: marks of cells by the array's name; hidden: marks of points by `vtkGhostType`. faces: of polyhedra.
     degrees: (c, 3) of Lagrange and Bezier cells along their axes; weights: (n,) of rational Bezier cells.
     old: the file is older than version 2.1 of VTK's. path: of the piece, where it has a file of its own.
@@ -43,6 +44,7 @@ class PieceData:
     weights: npt.NDArray[Any] | None = None
     old: bool = False
     path: str = ""
+    carried: tuple[npt.NDArray[Any], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +61,8 @@ class Part:
     """One piece, checked, or all of them. points: (n, 3) float64. counts: cells by VTK type, without ghosts.
 
     values: (n,) of the points, or one for each cell. ragged: the points of the cells of `faces`, which splits them.
-    weights: (n,) of rational Bezier cells' control points, or None.
+    weights: (n,) of rational Bezier cells' control points, or None. cells: how many the file has.
+    carried: (n, k) or, of cells, (c, k) of each further field; of_cells: which of them are of cells.
     """
 
     points: npt.NDArray[np.float64]
@@ -70,10 +73,15 @@ class Part:
     counts: dict[int, int]
     ghosts: int
     weights: npt.NDArray[Any] | None = None
+    cells: int = 0
+    carried: tuple[npt.NDArray[Any], ...] = ()
+    of_cells: tuple[bool, ...] = ()
 
 
-def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None) -> Part:
-    """One piece without its ghosts. Raises InputError, FieldError."""
+def checked(
+    path: str, piece: PieceData, field: FieldInfo, component: int | None, carried: Sequence[FieldInfo] = ()
+) -> Part:
+    """One piece without its ghosts. carried: further fields. Raises InputError, FieldError."""
     path = piece.path or path
     points = np.array(piece.points, dtype=np.float64)
     if points.size and not (points.min() >= -FARTHEST and points.max() <= FARTHEST):  # NaN is neither
@@ -87,15 +95,19 @@ def checked(path: str, piece: PieceData, field: FieldInfo, component: int | None
     faces = [_faces(arrays, number, piece, points) for number in counts if number in FACETED]
     values = scalar(piece.values, field.components, component)
     of_cells = field.of == "cells"
+    listed = of_cells or any(one.of == "cells" for one in carried)
     part = Part(
         points,
         values,
         blocks(arrays, counts, len(points)),
         faces,
-        [Ragged(*ragged(arrays, one.numbers, len(points), one.name), one.numbers) for one in faces * of_cells],
+        [Ragged(*ragged(arrays, one.numbers, len(points), one.name), one.numbers) for one in faces * listed],
         counts,
         len(arrays.types) - len(types),
         piece.weights,
+        len(arrays.types),
+        tuple(columns(rows, one) for rows, one in zip(piece.carried, carried, strict=True)),
+        tuple(one.of == "cells" for one in carried),
     )
     return _of_own_points(part, of_cells) if part.ghosts else part
 
@@ -123,7 +135,15 @@ def _of_own_points(part: Part, of_cells: bool) -> Part:
     part = renumbered(part, number)
     values = part.values if of_cells else part.values[used]
     weights = None if part.weights is None else part.weights[used]
-    return replace(part, points=part.points[used], values=values, weights=weights)
+    carried = of_points(part, lambda rows: rows[used])
+    return replace(part, points=part.points[used], values=values, weights=weights, carried=carried)
+
+
+def of_points(
+    part: Part, change: Callable[[npt.NDArray[Any]], npt.NDArray[Any]]
+) -> tuple[npt.NDArray[Any], ...]:
+    """The carried fields, those of points changed."""
+    return tuple(rows if cells else change(rows) for rows, cells in zip(part.carried, part.of_cells, strict=True))
 
 
 def used_points(part: Part) -> npt.NDArray[np.bool_]:
@@ -157,7 +177,7 @@ def together(path: str, parts: list[Part]) -> Part:
     for part in parts:
         moved.append(_moved(part, first_point, first_cell))
         first_point += len(part.points)
-        first_cell += len(part.values)
+        first_cell += part.cells
         if first_point > np.iinfo(np.int32).max:
             raise FieldError(f"{path}: holds more than 2,147,483,647 points; cut it into several files")
     return Part(
@@ -169,6 +189,9 @@ def together(path: str, parts: list[Part]) -> Part:
         {},
         sum(part.ghosts for part in parts),
         _all_weights(parts),
+        first_cell,
+        tuple(np.concatenate(rows) for rows in zip(*(part.carried for part in parts), strict=True)),
+        parts[0].of_cells,
     )
 
 
@@ -180,7 +203,7 @@ def _all_weights(parts: list[Part]) -> npt.NDArray[Any] | None:
 
 
 def _moved(part: Part, first_point: int, first_cell: int) -> Part:
-    """With higher numbers of points and cells. `first_cell` is only of meaning where values are of cells."""
+    """With higher numbers of points and cells."""
     step = np.int32(first_point)
 
     def later(numbers: npt.NDArray[np.intp] | slice) -> npt.NDArray[np.intp] | slice:

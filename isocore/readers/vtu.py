@@ -12,6 +12,7 @@ import os
 from isocore.cell_mesh import CellMesh
 from isocore.errors import reading
 from isocore.readers.options import ReadOptions
+from isocore.readers.vtk_carried import carried_fields
 from isocore.readers.vtk_fields import FieldInfo, choose, component_of
 from isocore.readers.vtk_mesh import assembled
 from isocore.readers.vtu_opening import opened
@@ -27,7 +28,9 @@ def read_vtu(path: Pathlike, options: ReadOptions) -> CellMesh:
         source = open_vtu(name)
         field = choose(name, source.fields, options)
         component = component_of(name, field, options.component)
-        return assembled(name, source.pieces(field), field, component, options.mesh, options.ignore)
+        carried = carried_fields(name, source.fields, field, options.carry)
+        pieces = source.pieces(field, carried)
+        return assembled(name, pieces, field, component, options.mesh, options.ignore, carried)
 
 
 def vtu_fields(path: Pathlike) -> tuple[FieldInfo, ...]:

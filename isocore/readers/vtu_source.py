@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy.typing as npt
@@ -41,23 +41,18 @@ class StoredSource:
         found += [FieldInfo(tag.name, tag.components, "cells", tag.type) for tag in arrays["CellData"]]
         return tuple({(f.of, f.name): f for f in found if f.type in DTYPES and f.components}.values())
 
-    def pieces(self, field: FieldInfo) -> Iterator[PieceData]:
+    def pieces(self, field: FieldInfo, carried: Sequence[FieldInfo] = ()) -> Iterator[PieceData]:
+        """Of each piece its cells, the values of `field`, and those of `carried`."""
         read = self.arrays.read
         for piece in self.full:
-            values = self._tag(piece, "PointData" if field.of == "points" else "CellData", field.name)
-            tuples = piece.points if field.of == "points" else piece.cells
-            if values.components != field.components:
-                raise InputError(
-                    f"{self.path}: field {field.name!r} has {field.components} components in one piece"
-                    f" and {values.components} in another; write it again"
-                )
             yield PieceData(
                 path=self.path,
                 points=read(self._tag(piece, "Points", None), 3 * piece.points).reshape(-1, 3),
                 types=read(self._tag(piece, "Cells", "types"), piece.cells),
                 offsets=read(self._tag(piece, "Cells", "offsets"), piece.cells),
                 connectivity=read(self._tag(piece, "Cells", "connectivity")),
-                values=read(values, tuples * field.components),
+                values=self._values(piece, field),
+                carried=tuple(self._values(piece, one) for one in carried),
                 ghosts=tuple((tag.name, read(tag, piece.cells)) for tag in piece.named("CellData", *OF_CELLS)),
                 hidden=next((read(tag, piece.points) for tag in piece.named("PointData", GHOST_TYPE)), None),
                 faces=FaceLists(
@@ -74,6 +69,16 @@ class StoredSource:
                 weights=next((read(tag, piece.points) for tag in piece.named("PointData", "RationalWeights")), None),
                 old=self.arrays.layout.version < (2, 1),
             )
+
+    def _values(self, piece: Piece, field: FieldInfo) -> npt.NDArray[Any]:
+        values = self._tag(piece, "PointData" if field.of == "points" else "CellData", field.name)
+        tuples = piece.points if field.of == "points" else piece.cells
+        if values.components != field.components:
+            raise InputError(
+                f"{self.path}: field {field.name!r} has {field.components} components in one piece"
+                f" and {values.components} in another; write it again"
+            )
+        return self.arrays.read(values, tuples * field.components)
 
     def _maybe(self, piece: Piece, name: str) -> npt.NDArray[Any] | None:
         return next((self.arrays.read(tag) for tag in piece.named("Cells", name)), None)

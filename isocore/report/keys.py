@@ -19,10 +19,10 @@ from isocore.report.sections import Asked, Written
 SCHEMA = 1
 #: The keys of a record, in their order.
 KEYS = (
-    "source", "output", "status", "message", "warnings", "missed", "sha256", "bytes",
-    "kind", "shape", "dtype", "spacing", "space", "unit", "volume", "step", "time", "field", "connectivity", "range",
-    "nonfinite", "ignored", "histogram", "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen",
-    "options", "surface", "reference", "ratio", "simplification", "error", "search", "ambiguous", "climbing", "label",
+    "source", "output", "status", "message", "warnings", "missed", "sha256", "bytes", "kind", "shape", "dtype",
+    "spacing", "space", "unit", "volume", "step", "time", "field", "connectivity", "range", "nonfinite", "ignored",
+    "histogram", "isovalue", "asked", "chosen", "offset", "backend", "backend_chosen", "options", "surface",
+    "carried", "colors", "reference", "ratio", "simplification", "error", "search", "ambiguous", "climbing", "label",
     "pieces", "facts", "seconds", "peak_rss_bytes",
 )
 
@@ -47,6 +47,8 @@ def run_as_dict(run: RunReport) -> dict[str, Any]:
         "backend": run.backend,
         "backend_chosen": run.backend_chosen,
         "surface": run.surface,
+        "carried": run.carried,
+        "colors": run.colors,
         "reference": run.reference,
         "ratio": run.ratio,
         "seconds": run.seconds or {},

@@ -14,7 +14,7 @@ from isocore.errors import shortened
 from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
 from isocore.measurements import Measurements
-from isocore.report.sections import Asked, Ratio, Reference, Seconds, Written
+from isocore.report.sections import Asked, Carried, Colors, Ratio, Reference, Seconds, Written
 from isocore.version import __version__
 
 Status = Literal["done", "empty", "skipped", "failed"]
@@ -24,6 +24,7 @@ Status = Literal["done", "empty", "skipped", "failed"]
 class RunReport:
     """One output. None where a failed run did not get so far; docs/report.md explains every key.
 
+    carried: fields that vertices have values of; colors: what they are coloured by.
     missed: requirements that the surface does not meet.
     isovalue: the number; chosen: how it came about. backend_chosen: the same of the backend.
     offset: the point that vertices are written about, where one was asked for.
@@ -44,6 +45,8 @@ class RunReport:
     backend: str | None = None
     backend_chosen: str = ""
     surface: Measurements | None = None
+    carried: tuple[Carried, ...] = ()
+    colors: Colors | None = None
     reference: Reference | None = None
     ratio: Ratio | None = None
     findings: Findings = dataclasses.field(default_factory=Findings)

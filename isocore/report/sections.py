@@ -29,6 +29,8 @@ class Given:
     space: str
     offset: str | None = None
     ignore: tuple[float, ...] | None = None
+    carry: tuple[str, ...] | None = None
+    merge_isovalues: bool | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,6 +55,30 @@ class Written:
 
     sha256: str
     bytes: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Carried:
+    """A field that was carried to the surface's vertices.
+
+    of: what the field is of, points or cells. range: of its finite values there, of a vector's lengths; None without
+    one. nonfinite: vertices where it is not finite.
+    """
+
+    name: str
+    of: str
+    components: int
+    range: tuple[float, float] | None
+    nonfinite: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Colors:
+    """What vertices are coloured by: a carried field, or the lengths of one; a map's name; the values at its ends."""
+
+    by: str
+    colormap: str
+    range: tuple[float, float] | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

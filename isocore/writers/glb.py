@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import struct
+from dataclasses import replace
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -14,11 +15,14 @@ import numpy.typing as npt
 
 from isocore.errors import OutputError
 from isocore.surface import Part, Surface
+from isocore.writers.names import column_names
 
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
-_FLOAT, _UINT = 5126, 5125
+_FLOAT, _UINT, _SHORT = 5126, 5125, 5123
 _VERTICES, _INDICES = 34962, 34963
+_MOST_COMPONENTS = 4
 _GREY = (200, 200, 200)
+_WHITE = (255, 255, 255)
 
 
 def write_glb(stream: BinaryIO, surface: Surface, threads: int) -> None:
@@ -43,7 +47,7 @@ def write_glb(stream: BinaryIO, surface: Surface, threads: int) -> None:
 
 
 class _Scene:
-    """What is known of the parts so far, and their arrays. All are of four-byte numbers, so that none needs padding."""
+    """What is known of the parts so far, and their arrays. All rows are of whole words, so that none needs padding."""
 
     def __init__(self) -> None:
         self.blocks: list[npt.NDArray[Any]] = []
@@ -59,21 +63,27 @@ class _Scene:
         attributes = {"POSITION": self._array(places, "VEC3", _VERTICES, bounded=True)}
         if surface.normals is not None:
             attributes["NORMAL"] = self._array(surface.normals[vertices].astype("<f4", copy=False), "VEC3", _VERTICES)
+        if surface.colours is not None:
+            attributes["COLOR_0"] = self._array(_linear(surface.colours[vertices]), "VEC4", _VERTICES)
+        for name, some in _attributes(surface, vertices).items():
+            attributes[name] = self._array(some, "SCALAR" if some.ndim == 1 else f"VEC{some.shape[1]}", _VERTICES)
         corners = (surface.triangles[triangles] - np.int32(vertices.start)).astype("<u4").reshape(-1)
         indices = self._array(corners, "SCALAR", _INDICES)
         primitive = {"attributes": attributes, "indices": indices, "material": len(self._parts)}
         self._meshes.append({"name": part.name, "primitives": [primitive]})
-        self._parts.append(part)
+        self._parts.append(part if surface.colours is None else replace(part, colour=_WHITE))
 
     def _array(self, values: npt.NDArray[Any], kind: str, target: int, *, bounded: bool = False) -> int:
         block = np.ascontiguousarray(values)
         self._views.append({"buffer": 0, "byteOffset": self.bytes, "byteLength": block.nbytes, "target": target})
         accessor: dict[str, Any] = {
             "bufferView": len(self._views) - 1,
-            "componentType": _UINT if target == _INDICES else _FLOAT,
+            "componentType": _SHORT if block.dtype == np.uint16 else _UINT if target == _INDICES else _FLOAT,
             "count": len(block),
             "type": kind,
         }
+        if block.dtype == np.uint16:
+            accessor["normalized"] = True
         if bounded:
             accessor |= {"min": block.min(axis=0).tolist(), "max": block.max(axis=0).tolist()}
         self._accessors.append(accessor)
@@ -101,14 +111,42 @@ class _Scene:
 
 
 def _node(part: Part, mesh: int) -> dict[str, Any]:
-    node: dict[str, Any] = {"name": part.name, "mesh": mesh}
-    return node if part.label is None else node | {"extras": {"label": part.label}}
+    said = {"label": part.label, "isovalue": part.isovalue}
+    extras = {key: value for key, value in said.items() if value is not None}
+    return {"name": part.name, "mesh": mesh} | ({"extras": extras} if extras else {})
+
+
+def _attributes(surface: Surface, vertices: slice) -> dict[str, npt.NDArray[np.float32]]:
+    """The carried fields under names that are the application's own, with an underscore before them; float32.
+
+    Those of more than four components, or with what is no number, have no place in glTF.
+    """
+    as_one = {name: values if values.ndim == 1 else values[:, 0] for name, values in surface.fields.items()}
+    names, found = column_names(as_one), {}
+    for name, values in surface.fields.items():
+        with np.errstate(over="ignore"):
+            rows = values.astype("<f4")
+        if rows.ndim == 2 and rows.shape[1] == 1:
+            rows = rows[:, 0]
+        if (rows.ndim == 1 or rows.shape[1] <= _MOST_COMPONENTS) and np.isfinite(rows).all():
+            found[f"_{names[name][0]}"] = rows[vertices]
+    return found
+
+
+def _linear(colours: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
+    """(v, 4) red, green, blue and opacity of 16 bits; colours are linear in glTF, and sRGB everywhere else."""
+    table = np.array([_to_linear(channel) for channel in range(256)])
+    rows = np.full((len(colours), 4), 65535, np.uint16)
+    rows[:, :3] = np.rint(table * 65535).astype("<u2")[colours]
+    return rows
+
+
+def _to_linear(channel: int) -> float:
+    value = channel / 255
+    return value / 12.92 if value <= 0.04045 else float(((value + 0.055) / 1.055) ** 2.4)
 
 
 def _material(part: Part) -> dict[str, Any]:
-    """Colours are linear in glTF, and sRGB everywhere else."""
-    channels = [channel / 255 for channel in part.colour or _GREY]
-    linear = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in channels]
-    factor = [*(round(value, 6) for value in linear), 1.0]
+    factor = [*(round(_to_linear(channel), 6) for channel in part.colour or _GREY), 1.0]
     surface = {"baseColorFactor": factor, "metallicFactor": 0.0, "roughnessFactor": 0.8}
     return {"name": part.name, "pbrMetallicRoughness": surface}

@@ -43,8 +43,9 @@ def collected(reports: list[dict[str, Any]]) -> dict[str, set[str]]:
         for record in report["outputs"]:
             seen[RECORD] |= record.keys()
             for name, value in record.items():
-                if isinstance(value, dict) and name not in OPEN:
-                    seen[name] |= value.keys()
+                for part in value if isinstance(value, list) else (value,):
+                    if isinstance(part, dict) and name not in OPEN:
+                        seen[name] |= part.keys()
     return seen
 
 
@@ -63,6 +64,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
         (scan, "-i", 50, "-b", "thinning", "--offset", "auto", "--ignore", 0),
         (masks, "--labels", 1, "--smooth", 2, "--background", 0),
         (masks, "--keep-largest", 1, "--min-piece", 2, "--fill-bubbles"),
+        (scan, "-i", 50, "--carry", scan, "--colormap", "turbo"),
         (mesh, "-i", 0.1, "-b", "mc"),
         (mesh, "-i", 0.1, "-b", "thinning"),
         (scan, "-i", 1e9, "-b", "mc", "--if-changed"),
@@ -80,7 +82,7 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
 def test_the_runs_reach_every_status(reports: list[dict[str, Any]]) -> None:
     """Else the other tests would prove less than they say."""
     statuses = [run["status"] for report in reports for run in report["outputs"]]
-    assert statuses == ["done"] * 8 + ["empty", "skipped", "failed"]
+    assert statuses == ["done"] * 9 + ["empty", "skipped", "failed"]
     assert {run["kind"] for report in reports for run in report["outputs"]} == {"volume", "mesh", None}
 
 
