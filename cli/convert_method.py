@@ -31,7 +31,7 @@ METHOD = (
     ),
     _method(
         "--simplify/--no-simplify",
-        show_default="simplify for asc with a bound",
+        show_default="simplify for asc, and for labels with --max-error",
         default=None,
         help="Fewest triangles within --max-error, both ways; no self-intersections.",
     ),

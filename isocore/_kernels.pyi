@@ -318,6 +318,20 @@ class LabelMesh(NamedTuple):
     triangles: _Int32  # counter-clockwise seen from the side of lower rank
     sides: npt.NDArray[np.uint32]  # two ranks per triangle, the higher first
 
+# Of each sheet, the border between two labels: what became of it.
+class SimplifiedLabels(NamedTuple):
+    pairs: npt.NDArray[np.uint32]  # (s, 2) ranks, the higher first
+    vertices_before: npt.NDArray[np.uint32]  # (s,)
+    triangles_before: npt.NDArray[np.uint32]  # (s,)
+    all_before: int  # triangles of the whole mesh
+    all_after: int
+    collapses: int  # of the whole mesh
+    refused: npt.NDArray[np.uint64]  # (s, 5) by link, shape, outward, back, crossing
+    unproved: npt.NDArray[np.uint64]  # (s,)
+    error: _Float64  # (s, 3) distances from the sheet's vertices before to it: largest, sum, sum of squares
+    error_other: _Float64  # (s, 3) the same, in coordinates times `other`
+    back_max: _Float64  # (s,)
+
 class LabelSurfaces:
     @property
     def vertices(self) -> int: ...
@@ -325,6 +339,14 @@ class LabelSurfaces:
     def triangles(self) -> int: ...
     def smooth(self, rounds: int, threads: int = 1) -> None: ...
     def solid(self, rank: int) -> LabelSolid: ...
+    def simplify(
+        self,
+        max_error: float,
+        stretch: tuple[float, float, float] = ...,
+        other: tuple[float, float, float] = ...,
+        most_triangles: int = 0,
+        threads: int = 1,
+    ) -> SimplifiedLabels: ...
     def neighbours(self) -> npt.NDArray[np.uint32]: ...  # (n, 2) ranks that share a border, the higher first
     def shared(self) -> LabelMesh: ...
 

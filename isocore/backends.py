@@ -89,7 +89,7 @@ LABELS = Backend(
     title="multiple material marching cubes",
     accepts=(Volume,),
     prepare=prepare_labels,
-    options=frozenset({"smooth", "background"}),
+    options=frozenset({"smooth", "background", "max_error", "simplify", "triangles"}),
     cites="Hege, Seebass, Stalling, Zoeckler 1997; Wu, Sullivan 2003",
 )
 

@@ -20,9 +20,12 @@ from isocore.volume import Volume
 def remeasured(findings: Findings, field: Field, isovalue: float, surface: Surface, options: Options) -> Findings:
     """The findings with the distance of marching cubes' vertices to `surface`, in voxels and in the world, and angles.
 
-    surface: as it is written, in the world of `field`. Nothing is measured where the method measured nothing.
+    surface: as it is written, in the world of `field`. Nothing is measured where the method measured nothing, nor of
+    label maps, whose reference is not kept.
     """
-    if findings.error is None or not isinstance(field, Volume) or not len(surface.triangles):
+    if findings.error is None or findings.label is not None:
+        return findings
+    if not isinstance(field, Volume) or not len(surface.triangles):
         return findings
     threads = options.threads
     stored = field.stored_isovalue(isovalue)

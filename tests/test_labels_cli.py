@@ -46,6 +46,7 @@ def two_boxes() -> np.ndarray[Any, Any]:
 
 def write_map(path: Path, labels: Any, *, names: bool = True) -> Path:
     image = nibabel.Nifti1Image(labels, np.diag([2.0, 1.0, 1.0, 1.0]))
+    image.header.set_xyzt_units("mm")
     if names:
         image.header.extensions.append(Nifti1Extension(0, TABLE))
     nibabel.save(image, path)
@@ -205,7 +206,7 @@ def test_if_changed_leaves_labels_alone_that_are_up_to_date(tmp_path: Path) -> N
         (("--labels", "1-"), "is no list of labels"),
         (("--labels", "9-1"), "must run upwards"),
         (("--background", "3"), "is about label maps"),
-        (("--labels", "all", "--max-error", "0.5"), "is not an option of labels"),
+        (("--labels", "all", "--block-size", "4"), "is not an option of labels"),
     ],
 )
 def test_requests_that_make_no_sense_are_refused(tmp_path: Path, arguments: tuple[str, ...], words: str) -> None:
@@ -276,3 +277,42 @@ def test_a_name_that_is_too_long_for_a_file_is_cut(tmp_path: Path) -> None:
     rows = records(tmp_path / "r.json")
     assert [row["label"]["name"] for row in rows] == names
     assert [Path(row["output"]).name for row in rows] == [f"seg_{'ä' * 50}_{n}.ply" for n in (1, 2)]
+
+
+def test_labels_are_simplified_together_where_a_bound_is_given(tmp_path: Path) -> None:
+    """Fewer triangles, within the bound both ways; with --no-simplify all of them; a list gives the same meshes."""
+    source = write_map(tmp_path / "map.nii", two_boxes())
+    report = tmp_path / "r.json"
+    asked: dict[str, tuple[str, ...]] = {
+        "all": ("--max-error", "0.4"),
+        "none": ("--max-error", "0.4", "--no-simplify"),
+        "mm": ("--simplify", "--max-error", "0.4mm"),
+    }
+    rows = {}
+    for name, options in asked.items():
+        result = run(source, "--labels", "all", "-d", tmp_path / name, "--report", report, *options)
+        assert result.exit_code == 0, result.output
+        rows[name] = records(report)
+    for row, whole in zip(rows["all"], rows["none"], strict=True):
+        fewer, error = row["simplification"], row["error"]
+        assert fewer["triangles_before"] == whole["surface"]["triangles"]
+        assert row["surface"]["triangles"] == fewer["triangles_before"] - 2 * fewer["collapses"] < 250
+        assert 0 < error["mean"] <= error["rms"] <= error["max"] <= 0.4 and 0 < error["back_max"] <= 0.4
+        assert row["surface"]["watertight"] and row["surface"]["euler"] == 2
+        assert whole["simplification"] is None and whole["error"] is None
+    assert all(0 < row["error"]["max_world"] <= 0.4 for row in rows["mm"])
+    assert run(source, "--labels", "2", "-d", tmp_path / "list", "--max-error", "0.4").exit_code == 0
+    name = "map_left_kidney.ply"
+    assert (tmp_path / "list" / name).read_bytes() == (tmp_path / "all" / name).read_bytes()
+
+
+def test_a_number_of_triangles_is_that_of_all_labels_together(tmp_path: Path) -> None:
+    """Each triangle between two labels counts once; where a given bound forbids fewer, a warning says so."""
+    source = write_map(tmp_path / "map.nii", two_boxes(), names=False)
+    report = tmp_path / "r.json"
+    arguments = (source, "--labels", "all", "-o", tmp_path / "all.ply", "--triangles", "60", "--report", report)
+    assert run(*arguments).exit_code == 0
+    both = sum(row["surface"]["triangles"] for row in records(report))
+    assert 60 < both < 60 + 30  # what lies between the two is in both
+    bounded = run(*arguments, "--max-error", "0.01")
+    assert bounded.exit_code == 0 and "--triangles 60" in bounded.stderr and "--max-error 0.01" in bounded.stderr

@@ -18,6 +18,8 @@ from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts,
 from isocore.job import Options
 from isocore.labels import MOST_LABELS, Label
 from isocore.methods.carrying import volume_fields
+from isocore.methods.label_simplifying import simplify_labels
+from isocore.methods.simplifying import volume_simplifier
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
@@ -33,19 +35,23 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     if not isinstance(field, Volume):
         raise FieldError("is a mesh, which holds no labels; leave out --labels")
     volume, background = field, options.background or 0
+    simplifier = volume_simplifier(volume, options, default=options.max_error is not None)
     census = take_census(volume, background)
     ranks = _ranks(census.values, background)
     surfaces = _kernels.label_surfaces(volume.samples, census.stored, ranks, options.threads)
     if options.smooth:
         surfaces.smooth(options.smooth, options.threads)
+    fewer = None if simplifier is None else simplify_labels(surfaces, simplifier)
     neighbours = _neighbours(surfaces, census.values, ranks, background)
     rank_of = {int(value): int(rank) for value, rank in zip(census.values, ranks, strict=True) if rank}
     count_of = {int(value): int(count) for value, count in zip(census.values, census.counts, strict=True)}
     voxel = abs(float(np.linalg.det(volume.affine[:3, :3])))
+    warnings = census.warnings + (() if fewer is None else fewer.warnings)
 
     def extract(value: float) -> Extraction:
         label = int(value)
-        vertices, triangles = _solid(surfaces, rank_of.get(label))
+        rank = rank_of.get(label)
+        vertices, triangles = _solid(surfaces, rank)
         start = perf_counter()
         normals = _kernels.triangle_normals(vertices, triangles) if options.normals else None
         seconds = perf_counter() - start
@@ -64,7 +70,9 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
         facts = LabelFacts(
             value=label, voxels=voxels, voxel_volume=voxels * voxel, neighbours=neighbours.get(label, ())
         )
-        return Extraction(surface, Findings(label=facts), census.warnings, seconds_normals=seconds)
+        error, simplification = (None, None) if fewer is None or rank is None else fewer.of(rank, len(triangles))
+        findings = Findings(label=facts, error=error, simplification=simplification)
+        return Extraction(surface, findings, warnings, seconds_normals=seconds)
 
     return extract
 

@@ -77,7 +77,8 @@ class Simplifier:
             refused_crossing=found.refused[4],
             seconds=perf_counter() - start,
         )
-        return Simplified(found.vertices, found.triangles, found.kept, error, facts, self._missed(found))
+        missed = self.missed(len(found.triangles))
+        return Simplified(found.vertices, found.triangles, found.kept, error, facts, missed)
 
     @property
     def is_bounded(self) -> bool:
@@ -85,21 +86,32 @@ class Simplifier:
         return math.isfinite(self.bound.distance) and (self.given or not self.most_triangles)
 
     def _run(self, mesh: Mesh, reference: Mesh) -> tuple[_kernels.SimplifiedMesh, Deviation]:
-        bound = self.bound.distance if self.is_bounded else math.inf
         if self.spacing is None:
+            bound = self.bound.distance if self.is_bounded else math.inf
             cell = _cell(*reference)
             stretch = (1 / cell,) * 3
             found = self._simplify(mesh, reference, bound / cell, stretch, stretch, cell)
-            return found, self._deviation(None, _times(found.error, cell), None, found.back_max * cell, found)
-        longest, shortest = max(self.spacing), min(self.spacing)
+            back = found.back_max * cell
+            return found, self._deviation(None, _times(found.error, cell), None, back, found.unproved)
+        found = self._simplify(mesh, reference, *self.scales())
+        return found, self.volume_deviation(found.error, found.error_other, found.back_max, found.unproved)
+
+    def scales(self) -> tuple[float, Axes, Axes]:
+        """Of a volume: the bound, the stretch of index space in which it holds, and the other that is measured in."""
+        assert self.spacing is not None
+        bound = self.bound.distance if self.is_bounded else math.inf
+        longest = max(self.spacing)
         world = (self.spacing[0] / longest, self.spacing[1] / longest, self.spacing[2] / longest)
+        return (bound / longest, world, _ONES) if self.bound.in_world else (bound, _ONES, world)
+
+    def volume_deviation(self, error: Axes, other: Axes, back: float, unproved: int) -> Deviation:
+        """What a kernel measured of a volume's mesh in these scales, for the report."""
+        assert self.spacing is not None
+        longest, shortest = max(self.spacing), min(self.spacing)
         if self.bound.in_world:
-            found = self._simplify(mesh, reference, bound / longest, world, _ONES)
-            back = found.back_max * longest
-            return found, self._deviation(found.error_other, _times(found.error, longest), back / shortest, back, found)
-        found = self._simplify(mesh, reference, bound, _ONES, world)
-        back = found.back_max
-        return found, self._deviation(found.error, _times(found.error_other, longest), back, back * longest, found)
+            back *= longest
+            return self._deviation(other, _times(error, longest), back / shortest, back, unproved)
+        return self._deviation(error, _times(other, longest), back, back * longest, unproved)
 
     def _simplify(
         self, mesh: Mesh, reference: Mesh, bound: float, stretch: Axes, other: Axes, cell: float = 1.0
@@ -107,7 +119,7 @@ class Simplifier:
         return _kernels.simplify(*mesh, *reference, bound, stretch, other, cell, self.most_triangles, self.threads)
 
     def _deviation(
-        self, voxels: Axes | None, world: Axes, back: float | None, back_world: float, found: _kernels.SimplifiedMesh
+        self, voxels: Axes | None, world: Axes, back: float | None, back_world: float, unproved: int
     ) -> Deviation:
         """back: no point of the surface lies further away; not said where that is not proved."""
         own = voxels or (None, None, None)
@@ -120,13 +132,12 @@ class Simplifier:
             rms_world=world[2],
             unit=self.unit,
             bound=self.bound.text if self.is_bounded else "none",
-            back_max=None if found.unproved else back,
-            back_max_world=None if found.unproved else back_world,
+            back_max=None if unproved else back,
+            back_max_world=None if unproved else back_world,
         )
 
-    def _missed(self, found: _kernels.SimplifiedMesh) -> tuple[str, ...]:
+    def missed(self, count: int) -> tuple[str, ...]:
         """Where more triangles are left than were asked for: why."""
-        count = len(found.triangles)
         if not self.most_triangles or count <= self.most_triangles:
             return ()
         asked = f"--triangles {self.most_triangles:,}: {count:,} are left"

@@ -33,11 +33,13 @@ void number_vertices(const LabelMesh& mesh, Solid& solid) {
     }
 }
 
-// The triangles that one label has around one cell's middle: all in one cell, so that there are never many.
+// The triangles that one label has around one cell's middle: there are never many.
 class Fans {
   public:
-    Fans(std::span<std::int32_t> corners, std::int32_t middle) : corners_(corners), middle_(middle) {
-        fan_.resize(corners.size() / 3);
+    // corners: of all triangles, three each. around: the numbers of those at the middle.
+    Fans(std::span<std::int32_t> corners, std::span<const std::uint32_t> around, std::int32_t middle)
+        : corners_(corners), around_(around), middle_(middle) {
+        fan_.resize(around.size());
         std::iota(fan_.begin(), fan_.end(), std::size_t{0});
         for (std::size_t t = 0; t < fan_.size(); ++t) {
             for (std::size_t u = 0; u < t; ++u) {
@@ -53,19 +55,18 @@ class Fans {
             if (fan_[t] != t) continue;
             const std::int32_t own = copy();
             for (std::size_t u = t; u < fan_.size(); ++u) {
-                if (fan_[u] == t) std::replace(&corners_[3 * u], &corners_[3 * u] + 3, middle_, own);
+                if (fan_[u] == t) std::replace(triangle(u).begin(), triangle(u).end(), middle_, own);
             }
         }
     }
 
   private:
+    std::span<std::int32_t, 3> triangle(std::size_t t) const { return corners_.subspan(3 * around_[t]).first<3>(); }
     bool share_a_side(std::size_t t, std::size_t u) const {
-        for (std::size_t n = 0; n < 3; ++n) {
-            const std::int32_t corner = corners_[3 * t + n];
-            const auto other = corners_.subspan(3 * u, 3);
-            if (corner != middle_ && std::find(other.begin(), other.end(), corner) != other.end()) return true;
-        }
-        return false;
+        const auto one = triangle(t), other = triangle(u);
+        return std::any_of(one.begin(), one.end(), [&](std::int32_t corner) {
+            return corner != middle_ && std::find(other.begin(), other.end(), corner) != other.end();
+        });
     }
     void join(std::size_t t, std::size_t u) {
         const std::size_t from = std::max(fan_[t], fan_[u]), to = std::min(fan_[t], fan_[u]);
@@ -73,39 +74,34 @@ class Fans {
     }
 
     std::span<std::int32_t> corners_;
+    std::span<const std::uint32_t> around_;
     std::int32_t middle_;
     std::vector<std::size_t> fan_;  // of each triangle: the first triangle of its fan
 };
 
-// Which of a triangle's vertices is the middle of a cell, or -1.
-std::int32_t middle_of(const LabelMesh& mesh, const Solid& solid, std::size_t triangle) {
-    for (std::size_t n = 0; n < 3; ++n) {
-        const std::int32_t corner = solid.triangles[3 * triangle + n];
-        const auto shared = static_cast<std::size_t>(solid.shared[static_cast<std::size_t>(corner)]);
-        if (free_axes(mesh.elements[shared]) == kCell) return corner;
-    }
-    return -1;
-}
-
-// A cone's triangles follow one another, since a cell draws them all.
+// Only the middles of cells have several fans of one label.
 void separate_fans(const LabelMesh& mesh, Solid& solid) {
-    const std::size_t count = solid.triangles.size() / 3;
-    for (std::size_t begin = 0; begin < count;) {
-        const std::int32_t middle = middle_of(mesh, solid, begin);
-        std::size_t end = begin + 1;
-        if (middle >= 0) {
-            while (end < count && middle_of(mesh, solid, end) == middle) ++end;
-            Fans fans({solid.triangles.data() + 3 * begin, 3 * (end - begin)}, middle);
-            fans.separate([&] {
-                const std::size_t own = solid.shared.size(), from = 3 * static_cast<std::size_t>(middle);
-                const std::array<float, 3> place{solid.vertices[from], solid.vertices[from + 1],
-                                                 solid.vertices[from + 2]};
-                solid.vertices.insert(solid.vertices.end(), place.begin(), place.end());
-                solid.shared.push_back(solid.shared[static_cast<std::size_t>(middle)]);
-                return static_cast<std::int32_t>(own);
-            });
-        }
-        begin = end;
+    std::vector<std::pair<std::int32_t, std::uint32_t>> corners;  // middles of cells, and a triangle of each
+    for (std::size_t n = 0; n < solid.triangles.size(); ++n) {
+        const auto shared = static_cast<std::size_t>(solid.shared[static_cast<std::size_t>(solid.triangles[n])]);
+        if (free_axes(mesh.elements[shared]) == kCell)
+            corners.emplace_back(solid.triangles[n], static_cast<std::uint32_t>(n / 3));
+    }
+    std::sort(corners.begin(), corners.end());
+    std::vector<std::uint32_t> around;
+    for (std::size_t begin = 0, end = 0; begin < corners.size(); begin = end) {
+        const std::int32_t middle = corners[begin].first;
+        around.clear();
+        for (end = begin; end < corners.size() && corners[end].first == middle; ++end)
+            around.push_back(corners[end].second);
+        Fans fans({solid.triangles.data(), solid.triangles.size()}, around, middle);
+        fans.separate([&] {
+            const std::size_t own = solid.shared.size(), from = 3 * static_cast<std::size_t>(middle);
+            const std::array<float, 3> place{solid.vertices[from], solid.vertices[from + 1], solid.vertices[from + 2]};
+            solid.vertices.insert(solid.vertices.end(), place.begin(), place.end());
+            solid.shared.push_back(solid.shared[static_cast<std::size_t>(middle)]);
+            return static_cast<std::int32_t>(own);
+        });
     }
 }
 

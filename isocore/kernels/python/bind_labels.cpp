@@ -1,5 +1,8 @@
 // bind_labels.cpp - Python's view of kernels/labels: which labels a volume holds, and the mesh that they share.
+#include <nanobind/stl/array.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <mutex>
 #include <span>
@@ -8,12 +11,14 @@
 
 #include "labels/census.hpp"
 #include "labels/label_mesh.hpp"
+#include "labels/sheets.hpp"
 #include "labels/smooth.hpp"
 #include "labels/solids.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/named_tuple.hpp"
 #include "samples/sample_types.hpp"
+#include "simplification/simplify.hpp"
 #include "surface/mesh_view.hpp"
 
 namespace isocore::python {
@@ -25,10 +30,41 @@ nb::object copied(const From& values) {
     return to_numpy(Array<T>(values.begin(), values.end()));
 }
 
+using simplification::Facts;
+using simplification::SheetFacts;
+
+Array<std::uint64_t> refused_of(const Facts& facts) {
+    Array<std::uint64_t> out;
+    for (const SheetFacts& sheet : facts.sheets) out.insert(out.end(), sheet.refused.begin(), sheet.refused.end());
+    return out;
+}
+
+Array<std::uint64_t> unproved_of(const Facts& facts) {
+    Array<std::uint64_t> out;
+    for (const SheetFacts& sheet : facts.sheets) out.push_back(sheet.unproved);
+    return out;
+}
+
+Array<double> back_of(const Facts& facts) {
+    Array<double> out;
+    for (const SheetFacts& sheet : facts.sheets) out.push_back(sheet.back_max);
+    return out;
+}
+
+Array<double> errors_of(const Facts& facts, simplification::Deviation SheetFacts::* which) {
+    Array<double> out;
+    for (const SheetFacts& sheet : facts.sheets) {
+        const simplification::Deviation& error = sheet.*which;
+        for (const double number : {error.max, error.sum, error.squares}) out.push_back(number);
+    }
+    return out;
+}
+
 // The mesh and its lists of triangles by label. Python asks for one label at a time, from any thread.
 class LabelSurfaces {
   public:
-    LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks) : mesh_(std::move(mesh)), solids_(mesh_, ranks) {}
+    LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks)
+        : mesh_(std::move(mesh)), ranks_(ranks), solids_(mesh_, ranks) {}
 
     std::size_t vertices() const { return mesh_.elements.size(); }
     std::size_t triangles() const { return mesh_.sides.size() / 2; }
@@ -50,6 +86,31 @@ class LabelSurfaces {
                            to_numpy(std::move(solid.shared)));
     }
 
+    nb::object simplify(const simplification::Options& options, const NamedTuple& simplified_labels) {
+        labels::Sheets sheets;
+        simplification::Facts facts;
+        std::size_t before = 0;
+        {
+            const nb::gil_scoped_release unlocked;
+            const std::lock_guard<std::mutex> alone(one_at_a_time_);
+            before = triangles();
+            sheets = labels::find_sheets(mesh_);
+            const simplification::MeshArrays<float> arrays{mesh_.vertices.data(),      vertices(),
+                                                           mesh_.triangles.data(),     triangles(),
+                                                           sheets.of_triangles.data(), sheets.pairs.size() / 2};
+            simplification::Simplified<float> fewer = simplification::simplify(arrays, arrays, options);
+            facts = std::move(fewer.facts);
+            labels::replace(mesh_, std::move(fewer.vertices), std::move(fewer.triangles), fewer.kept, fewer.left);
+            solids_ = labels::Solids(mesh_, ranks_);
+        }
+        return simplified_labels(to_numpy(std::move(sheets.pairs), 2), to_numpy(std::move(sheets.vertices)),
+                                 to_numpy(std::move(sheets.triangles)), before, triangles(), facts.collapses,
+                                 to_numpy(refused_of(facts), simplification::kRules), to_numpy(unproved_of(facts)),
+                                 to_numpy(errors_of(facts, &simplification::SheetFacts::error), 3),
+                                 to_numpy(errors_of(facts, &simplification::SheetFacts::other), 3),
+                                 to_numpy(back_of(facts)));
+    }
+
     nb::object neighbours() const { return to_numpy(labels::neighbours(mesh_), 2); }
 
     // All that is shared, copied: for tests, and for whoever wants the whole mesh.
@@ -61,6 +122,7 @@ class LabelSurfaces {
 
   private:
     labels::LabelMesh mesh_;
+    std::size_t ranks_;
     labels::Solids solids_;
     std::mutex one_at_a_time_;
 };
@@ -115,12 +177,23 @@ void bind_labels(nb::module_& module) {
     using nb::arg;
     const NamedTuple label_census(module, "LabelCensus", {"values", "counts", "not_a_number", "too_many", "not_whole"});
     const NamedTuple label_solid(module, "LabelSolid", {"vertices", "triangles", "shared"});
+    const NamedTuple simplified_labels(module, "SimplifiedLabels",
+                                       {"pairs", "vertices_before", "triangles_before", "all_before", "all_after",
+                                        "collapses", "refused", "unproved", "error", "error_other", "back_max"});
     const NamedTuple label_mesh(module, "LabelMesh", {"vertices", "elements", "triangles", "sides"});
     nb::class_<LabelSurfaces>(module, "LabelSurfaces")
         .def_prop_ro("vertices", &LabelSurfaces::vertices)
         .def_prop_ro("triangles", &LabelSurfaces::triangles)
         .def("neighbours", &LabelSurfaces::neighbours)
         .def("smooth", &LabelSurfaces::smooth, arg("rounds"), arg("threads") = 1)
+        .def(
+            "simplify",
+            [=](LabelSurfaces& all, double max_error, const std::array<double, 3>& stretch,
+                const std::array<double, 3>& other, std::size_t most_triangles, int threads) {
+                return all.simplify({max_error, stretch, 1.0, other, most_triangles, threads}, simplified_labels);
+            },
+            arg("max_error"), arg("stretch") = std::array<double, 3>{1, 1, 1},
+            arg("other") = std::array<double, 3>{1, 1, 1}, arg("most_triangles") = 0, arg("threads") = 1)
         .def(
             "solid", [=](LabelSurfaces& all, std::size_t rank) { return all.solid(rank, label_solid); }, arg("rank"))
         .def("shared", [=](const LabelSurfaces& all) { return all.shared(label_mesh); });

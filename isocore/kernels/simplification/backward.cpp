@@ -50,7 +50,7 @@ bool Backward<Real>::are_near(const Star& star, float limit) {
         faces_.push_back({star.place(0), star.place(n), star.place(n + 1)});
         box.add(Box::around(faces_.back(), limit + 1e-3f));
     }
-    near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box);
+    near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box, star.sheet);
     distances_.clear();
     return std::all_of(faces_.begin(), faces_.end(), [&](const Corners& face) {
         distance_ = 0;
@@ -66,7 +66,7 @@ float Backward<Real>::distance(std::int32_t triangle, float limit) {
     const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
     const auto place = [&](std::size_t n) { return mesh_.places[static_cast<std::size_t>(corners[n])].at; };
     const Corners face{Spot{0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0))};
-    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + 1e-3f));
+    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + 1e-3f), mesh_.sheet_of(triangle));
     distance_ = 0;
     return is_near(face, near_star_, 0) ? distance_ : std::numeric_limits<float>::infinity();
 }

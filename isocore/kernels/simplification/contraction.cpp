@@ -1,105 +1,252 @@
 #include "simplification/contraction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isocore::simplification {
+namespace {
+
+// How far the origin is from the line between two places.
+float distance_to_line(const Spot& from, const Spot& to) {
+    const Spot way = minus(to, from);
+    const float length = dot(way, way);
+    const float share = length > 0 ? std::clamp(-dot(from, way) / length, 0.0f, 1.0f) : 0.0f;
+    const Spot at{from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
+    return std::sqrt(dot(at, at));
+}
+
+}  // namespace
 
 template <class Real>
 bool Contraction<Real>::contract(const Ring& ring, std::size_t target) {
-    star_.turn(ring, target);
-    if (!keeps_topology()) return refuse(Rule::link);
-    if (!star_.has_good_shapes()) return refuse(Rule::shape);
-    star_.draw(facets_);
-    const float limit = limit_here();
-    witnesses_.gather(mesh_, star_);
-    if (!witnesses_.are_near(facets_, limit)) return refuse(Rule::outward);
-    if (!backward_.are_near(star_, limit)) return refuse(Rule::back);
-    if (crossings_.are_there(star_, facets_)) return refuse(Rule::crossing);
+    if (mesh_.vertices[static_cast<std::size_t>(ring.centre)].on_curve) {
+        gather_fans(ring.centre, ring.neighbours[target]);
+    } else {
+        count_ = 1;
+        parts_[0].star.turn(ring, target);
+    }
+    if (!are_allowed() || !are_apart()) return false;
     commit();
+    return true;
+}
+
+// A vertex on a curve: one star for each sheet there.
+template <class Real>
+void Contraction<Real>::gather_fans(std::int32_t vertex, std::int32_t target) {
+    std::array<std::size_t, Vertex::kMostTriangles> ends;
+    count_ = mesh_.find_fans(mesh_.vertices[static_cast<std::size_t>(vertex)], ends);
+    if (parts_.size() < count_) parts_.resize(count_);
+    Ring fan;
+    for (std::size_t n = 0, first = 0; n < count_; first = ends[n++]) {
+        fan.gather_fan(mesh_, vertex, first, ends[n]);
+        parts_[n].star.turn(fan, fan.neighbours[0] == target ? 0 : fan.count - 1);
+    }
+}
+
+// All rules but that of crossings, each for all stars.
+template <class Real>
+bool Contraction<Real>::are_allowed() {
+    for (std::size_t n = 0; n < count_; ++n) {
+        if (!keeps_topology(parts_[n].star)) return refuse(Rule::link, parts_[n].star);
+    }
+    for (std::size_t n = 0; n < count_; ++n) {
+        if (!parts_[n].star.has_good_shapes()) return refuse(Rule::shape, parts_[n].star);
+    }
+    if (mesh_.vertices[static_cast<std::size_t>(parts_[0].star.centre)].on_curve && !keeps_curve(parts_[0].star))
+        return refuse(Rule::outward, parts_[0].star);
+    for (std::size_t n = 0; n < count_; ++n) {
+        auto& [star, facets, witnesses, distances] = parts_[n];
+        star.draw(facets);
+        witnesses.gather(mesh_, star);
+        if (!witnesses.are_near(facets, limit_here(star))) return refuse(Rule::outward, star);
+    }
+    for (std::size_t n = 0; n < count_; ++n) {
+        auto& [star, facets, witnesses, distances] = parts_[n];
+        if (!backward_.are_near(star, limit_here(star))) return refuse(Rule::back, star);
+        for (std::size_t face = 1; face + 1 < star.count; ++face) distances[face] = backward_.distance(face);
+    }
+    return true;
+}
+
+template <class Real>
+bool Contraction<Real>::are_apart() {
+    others_.clear();
+    for (std::size_t n = count_; n-- > 0;) {
+        if (crossings_.are_there(parts_[n].star, parts_[n].facets, others_))
+            return refuse(Rule::crossing, parts_[n].star);
+        others_.push_back(&parts_[n].star);
+    }
     return true;
 }
 
 // The limit, less what rounding may have done to places that are so far apart.
 template <class Real>
-float Contraction<Real>::limit_here() const {
-    return limit_ - 2e-6f * (1 + star_.reach() + limit_);
+float Contraction<Real>::limit_here(const Star& star) const {
+    return limit_ - 2e-6f * (1 + star.reach() + limit_);
 }
 
 // The link condition of T. K. Dey, H. Edelsbrunner, S. Guha, D. V. Nekhayev, "Topology preserving edge contraction",
 // 1999: the two ends have no other neighbours in common than the two beside the edge, and are not two corners of a
 // tetrahedron.
 template <class Real>
-bool Contraction<Real>::keeps_topology() const {
-    const Vertex& target = mesh_.vertices[static_cast<std::size_t>(star_.target())];
-    if (target.odd || star_.count < 3 || target.count + star_.count > Vertex::kMostTriangles + 4) return false;
+bool Contraction<Real>::keeps_topology(const Star& star) const {
+    const Vertex& target = mesh_.vertices[static_cast<std::size_t>(star.target())];
+    if (target.on_curve || target.is_joint || count_ > 1) return keeps_topology_at_joint(star);
+    if (target.odd || star.count < 3 || target.count + star.count > Vertex::kMostTriangles + 4) return false;
     std::array<std::int32_t, Vertex::kMostTriangles + 1> around;
     std::size_t count = 0;
     for (std::size_t n = 0; n < target.count; ++n) {
         const Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(target.ring[n])];
-        const std::size_t index = triangle.index_of(star_.target());
+        const std::size_t index = triangle.index_of(star.target());
         around[count++] = triangle.after(index);
         if (target.open && n + 1 == target.count) around[count++] = triangle.after(index == 2 ? 0 : index + 1);
     }
     std::size_t common = 0;
-    for (std::size_t n = 1; n < star_.count; ++n)
-        common += static_cast<std::size_t>(std::count(around.begin(), around.begin() + count, star_.neighbours[n]));
-    return common == 2 && (star_.count > 3 || target.open || target.count > 3);
+    for (std::size_t n = 1; n < star.count; ++n)
+        common += static_cast<std::size_t>(std::count(around.begin(), around.begin() + count, star.neighbours[n]));
+    return common == 2 && (star.count > 3 || target.open || target.count > 3);
+}
+
+// Section 5 there, for complexes: vertices on curves count as neighbours of one vertex more, so that a curve is
+// contracted along itself, and to no loop of two. Each star for itself: the neighbours in common are those beside the
+// edge. A fan of one triangle would vanish, and stays.
+template <class Real>
+bool Contraction<Real>::keeps_topology_at_joint(const Star& star) const {
+    const Vertex& target = mesh_.vertices[static_cast<std::size_t>(star.target())];
+    std::size_t added = 0;
+    for (std::size_t n = 0; n < count_; ++n) added += parts_[n].star.count;
+    if (star.count < 3 || target.count + added > Vertex::kMostTriangles) return false;
+    std::array<std::array<std::int32_t, 2>, Vertex::kMostTriangles> sides;  // of the target's triangles
+    for (std::size_t n = 0; n < target.count; ++n) {
+        const Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(target.ring[n])];
+        const std::size_t index = triangle.index_of(star.target());
+        sides[n] = {triangle.after(index), triangle.after(index == 2 ? 0 : index + 1)};
+    }
+    const auto end = sides.begin() + target.count;
+    const auto is_neighbour = [&](std::int32_t vertex) {
+        return std::any_of(sides.begin(), end, [&](const auto& s) { return s[0] == vertex || s[1] == vertex; });
+    };
+    std::size_t common = 0;
+    for (std::size_t n = 1; n < star.count; ++n) common += static_cast<std::size_t>(is_neighbour(star.neighbours[n]));
+    if (common != star.vanishing()) return false;
+    const std::int32_t one = star.neighbours[1], other = star.neighbours[2];
+    return star.count > 3 || star.vanishing() == 1 || std::none_of(sides.begin(), end, [&](const auto& s) {
+               return (s[0] == one && s[1] == other) || (s[0] == other && s[1] == one);
+           });
+}
+
+// Do all vertices that the curve once had between the two neighbours lie within the limit of the line between them?
+// Then every point of either lies within it of the other: between two of those vertices and the places on the line that
+// they are nearest to, points of both can be paired in proportion, and distances of pairs are a convex function.
+template <class Real>
+bool Contraction<Real>::keeps_curve(const Star& star) const {
+    const auto place = [&](std::int32_t number) -> const auto& {
+        return mesh_.places[static_cast<std::size_t>(number)].at;
+    };
+    const float limit = limit_here(star);
+    const auto is_near = [&](std::int32_t number) {
+        return distance_to_line(mesh_.relative(place(star.target()), place(number)),
+                                mesh_.relative(place(star.other_end()), place(number))) <= limit;
+    };
+    if (!is_near(star.centre)) return false;
+    for (const std::int32_t next : mesh_.along(star.centre)) {
+        std::int32_t from = star.centre, at = next;
+        while (mesh_.vertices[static_cast<std::size_t>(at)].count == 0) {
+            if (!is_near(at)) return false;
+            const auto& along = mesh_.along(at);
+            const std::int32_t onward = along[0] == from ? along[1] : along[0];
+            from = at;
+            at = onward;
+        }
+    }
+    return true;
 }
 
 template <class Real>
 void Contraction<Real>::commit() {
     ++collapses;
-    for (std::size_t n = 0; n < star_.count; ++n) {
-        cubes_.clear();
-        grid_.cubes_of(mesh_, star_.triangles[n], cubes_);
-        grid_.remove(star_.triangles[n], cubes_.data(), cubes_.size(), spare_);
+    const auto centre = static_cast<std::size_t>(parts_[0].star.centre),
+               target = static_cast<std::size_t>(parts_[0].star.target());
+    for (std::size_t p = 0; p < count_; ++p) {
+        const Star& star = parts_[p].star;
+        for (std::size_t n = 0; n < star.count; ++n) {
+            if (star.triangles[n] == kNone) continue;
+            cubes_.clear();
+            grid_.cubes_of(mesh_, star.triangles[n], cubes_);
+            grid_.remove(star.triangles[n], cubes_.data(), cubes_.size(), spare_);
+        }
+        parts_[p].witnesses.hand_over(mesh_, star);
     }
-    witnesses_.hand_over(mesh_, star_);
-    const auto centre = static_cast<std::size_t>(star_.centre), target = static_cast<std::size_t>(star_.target());
     mesh_.quadrics[target].add(mesh_.quadrics[centre],
                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
-    enter_faces();
-    join_rings();
-}
-
-template <class Real>
-void Contraction<Real>::enter_faces() {
-    for (std::size_t n = 1; n + 1 < star_.count; ++n) {
-        const std::int32_t number = star_.triangles[n];
-        Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
-        triangle.corners[triangle.index_of(star_.centre)] = star_.target();
-        mesh_.proved[static_cast<std::size_t>(number)] = backward_.distance(n);
-        const std::size_t first = crossings_.first_cube(n);
-        grid_.enter(number, crossings_.cubes_of_faces().data() + first, crossings_.end_cube(n) - first, spare_);
+    for (std::size_t p = 0; p < count_; ++p) enter_faces(parts_[p]);
+    for (std::size_t p = 0; p < count_; ++p) join_ring(parts_[p].star);
+    mesh_.vertices[centre].count = 0;
+    mesh_.vertices[centre].movable = false;
+    for (std::size_t p = 0; p < count_; ++p) retire(parts_[p].star);
+    for (std::size_t p = 0; p < count_; ++p) {
+        const Star& star = parts_[p].star;
+        for (std::size_t n = 1; n < star.count; ++n) wake(star.neighbours[n], star.target());
     }
 }
 
-// The target's ring: where the two triangles were that vanish, the faces stand now.
 template <class Real>
-void Contraction<Real>::join_rings() {
-    Vertex& target = mesh_.vertices[static_cast<std::size_t>(star_.target())];
-    const std::int32_t gone = star_.triangles[0], also_gone = star_.triangles[star_.count - 1];
-    const std::size_t faces = star_.face_count(), old = target.count;
+void Contraction<Real>::enter_faces(const Part& part) {
+    const Star& star = part.star;
+    for (std::size_t n = 1; n + 1 < star.count; ++n) {
+        const std::int32_t number = star.triangles[n];
+        Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
+        triangle.corners[triangle.index_of(star.centre)] = star.target();
+        mesh_.proved[static_cast<std::size_t>(number)] = part.distances[n];
+        if (count_ == 1) {
+            const std::size_t first = crossings_.first_cube(n);
+            grid_.enter(number, crossings_.cubes_of_faces().data() + first, crossings_.end_cube(n) - first, spare_);
+        } else {
+            cubes_.clear();
+            grid_.cubes_of(mesh_, number, cubes_);
+            grid_.enter(number, cubes_.data(), cubes_.size(), spare_);
+        }
+    }
+}
+
+// The target's ring: where the triangles were that vanish, the faces stand now. A joint's has no order.
+template <class Real>
+void Contraction<Real>::join_ring(const Star& star) {
+    Vertex& target = mesh_.vertices[static_cast<std::size_t>(star.target())];
+    const std::int32_t gone = star.triangles[0] == kNone ? star.triangles[star.count - 1] : star.triangles[0];
+    const std::size_t faces = star.face_count(), old = target.count, vanishing = star.vanishing();
     const auto first = static_cast<std::size_t>(std::find(target.ring, target.ring + old, gone) - target.ring);
-    std::int32_t* const ring = room_.take(old - 2 + faces);
+    std::int32_t* const ring = room_.take(old - vanishing + faces);
+    const bool is_row = target.open || target.on_curve;
     std::size_t count = 0;
-    if (target.open) std::copy_n(target.ring, first, ring);
-    if (target.open) count = first;
-    for (std::size_t n = 1; n + 1 < star_.count; ++n) ring[count++] = star_.triangles[n];
-    const std::size_t others = target.open ? old - first : old;
-    for (std::size_t n = 2; n < others; ++n) ring[count++] = target.ring[(first + n) % old];
+    if (target.is_joint) {
+        const auto stays = [&](std::int32_t t) {
+            return t != star.triangles[0] && t != star.triangles[star.count - 1];
+        };
+        count = static_cast<std::size_t>(std::copy_if(target.ring, target.ring + old, ring, stays) - ring);
+    } else if (is_row) {
+        std::copy_n(target.ring, first, ring);
+        count = first;
+    }
+    for (std::size_t n = 1; n + 1 < star.count; ++n) ring[count++] = star.triangles[n];
+    const std::size_t others = target.is_joint ? 0 : is_row ? old - first : old;
+    for (std::size_t n = vanishing; n < others; ++n) ring[count++] = target.ring[(first + n) % old];
     target.ring = ring;
     target.count = static_cast<std::uint16_t>(count);
     target.failed = 0;
+}
 
-    for (const std::int32_t triangle : {gone, also_gone})
+// The triangles that vanish.
+template <class Real>
+void Contraction<Real>::retire(const Star& star) {
+    const auto drop = [&](std::int32_t triangle, std::int32_t opposite) {
+        if (triangle == kNone) return;
+        ++vanished;
         mesh_.triangles[static_cast<std::size_t>(triangle)].corners[0] = kNone;
-    Vertex& centre = mesh_.vertices[static_cast<std::size_t>(star_.centre)];
-    centre.count = 0;
-    centre.movable = false;
-    drop_from_ring(star_.neighbours[1], gone);
-    drop_from_ring(star_.neighbours[star_.count - 1], also_gone);
-    for (std::size_t n = 1; n < star_.count; ++n) wake(star_.neighbours[n]);
+        drop_from_ring(opposite, triangle);
+    };
+    drop(star.triangles[0], star.neighbours[1]);
+    drop(star.triangles[star.count - 1], star.neighbours[star.count - 1]);
 }
 
 template <class Real>
@@ -110,7 +257,7 @@ void Contraction<Real>::drop_from_ring(std::int32_t number, std::int32_t triangl
     const auto at = static_cast<std::size_t>(found - vertex.ring);
     std::copy(found + 1, end, found);
     --vertex.count;
-    if (at < 64) {
+    if (at < 64 && !vertex.on_curve) {
         const std::uint64_t below = (std::uint64_t{1} << at) - 1;
         vertex.failed = (vertex.failed & below) | (vertex.failed >> 1 & ~below);
     }
@@ -118,12 +265,19 @@ void Contraction<Real>::drop_from_ring(std::int32_t number, std::int32_t triangl
 
 // The edge from a neighbour to the target is a new one, and may be tried.
 template <class Real>
-void Contraction<Real>::wake(std::int32_t number) {
+void Contraction<Real>::wake(std::int32_t number, std::int32_t target) {
     Vertex& vertex = mesh_.vertices[static_cast<std::size_t>(number)];
     if (vertex.odd) return;
+    if (vertex.on_curve) {
+        const auto ends = mesh_.ends_of(number);
+        for (std::size_t n = 0; n < ends.size(); ++n) {
+            if (ends[n] == target && count_ > 1) vertex.failed &= ~(std::uint64_t{1} << n);
+        }
+        return;
+    }
     for (std::size_t n = 0; n < vertex.count; ++n) {
         const Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(vertex.ring[n])];
-        if (triangle.after(triangle.index_of(number)) == star_.target()) {
+        if (triangle.after(triangle.index_of(number)) == target) {
             vertex.failed &= ~(std::uint64_t{1} << n);
             return;
         }

@@ -20,44 +20,66 @@ template <class Real>
 class Contraction {
   public:
     Contraction(Mesh<Real>& mesh, const Reference<Real>& reference, TriangleGrid& grid, float limit)
-        : mesh_(mesh), grid_(grid), limit_(limit), backward_(reference, mesh), crossings_(mesh, grid) {}
+        : mesh_(mesh),
+          grid_(grid),
+          limit_(limit),
+          backward_(reference, mesh),
+          crossings_(mesh, grid),
+          refused_(reference.mesh().sheet_count + 1) {}
 
     // Contracts the edge from the ring's centre to its neighbour `target` onto that neighbour. False if a rule forbids
-    // it; then nothing has changed.
+    // it; then nothing has changed. Of a vertex on a curve, the ring holds nothing but the neighbours there.
     bool contract(const Ring& ring, std::size_t target);
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
-    // The star of the last contraction.
-    const Star& star() const { return star_; }
+    // Of the last contraction: its star, or one for each sheet that meets on the curve.
+    const Star& star(std::size_t n) const { return parts_[n].star; }
+    std::size_t star_count() const { return count_; }
     Backward<Real>& backward() { return backward_; }
 
-    std::size_t collapses = 0;
-    std::array<std::size_t, kRules> refused{};
+    std::size_t collapses = 0, vanished = 0;  // edges, and triangles
+    // By sheet.
+    const std::vector<std::array<std::size_t, kRules>>& refused() const { return refused_; }
 
   private:
-    bool refuse(Rule rule) {
-        ++refused[static_cast<std::size_t>(rule)];
+    // A star, and what was found out about its faces.
+    struct Part {
+        Star star;
+        Facets facets;
+        Witnesses witnesses;
+        std::array<float, Ring::kRoom> distances;
+    };
+
+    bool refuse(Rule rule, const Star& star) {
+        ++refused_[star.sheet][static_cast<std::size_t>(rule)];
         return false;
     }
-    bool keeps_topology() const;
-    float limit_here() const;
+    void gather_fans(std::int32_t vertex, std::int32_t target);
+    bool are_allowed();
+    bool are_apart();
+    bool keeps_topology(const Star& star) const;
+    bool keeps_topology_at_joint(const Star& star) const;
+    bool keeps_curve(const Star& star) const;
+    float limit_here(const Star& star) const;
     void commit();
-    void enter_faces();
-    void join_rings();
+    void enter_faces(const Part& part);
+    void join_ring(const Star& star);
+    void retire(const Star& star);
     void drop_from_ring(std::int32_t vertex, std::int32_t triangle);
-    void wake(std::int32_t vertex);
+    void wake(std::int32_t vertex, std::int32_t target);
 
     Mesh<Real>& mesh_;
     TriangleGrid& grid_;
     float limit_;
-    Star star_;
-    Facets facets_;
-    Witnesses witnesses_;
+    std::vector<Part> parts_{1};
+    std::size_t count_ = 1;
+    std::vector<const Star*> others_;
     Backward<Real> backward_;
     Crossings<Real> crossings_;
     RingRoom room_;
     TriangleGrid::Spare spare_;
     std::vector<std::int32_t> cubes_;
+    std::vector<std::array<std::size_t, kRules>> refused_;
 };
 
 }  // namespace isocore::simplification

@@ -27,7 +27,7 @@ float size_of(const Spot& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs
 }  // namespace
 
 template <class Real>
-bool Crossings<Real>::are_there(const Star& star, const Facets& facets) {
+bool Crossings<Real>::are_there(const Star& star, const Facets& facets, const std::vector<const Star*>& others) {
     prepare(star, facets);
     for (std::size_t n = 1; n + 2 < star.count; ++n) {
         const Candidate face{{star.target(), star.neighbours[n], star.neighbours[n + 1]},
@@ -35,12 +35,27 @@ bool Crossings<Real>::are_there(const Star& star, const Facets& facets) {
                              {star.place(0), star.place(n), star.place(n + 1)}};
         if (meets_a_face(star, face, n + 1)) return true;
     }
+    for (const Star* other : others) {
+        if (meets_faces_of(star, *other)) return true;
+    }
     find_cubes(star);
     find_candidates(star);
+    const bool has_others = star.vanishing() == 1;
     return std::any_of(candidates_.begin(), candidates_.end(), [&](std::int32_t triangle) {
-        const auto found = candidate(star, triangle);
+        const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
+        if (has_others && std::find(corners.begin(), corners.end(), star.centre) != corners.end()) return false;
+        const auto found = candidate(star, corners);
         return found && meets_a_face(star, *found, 1);
     });
+}
+
+template <class Real>
+bool Crossings<Real>::meets_faces_of(const Star& star, const Star& other) const {
+    for (std::size_t n = 1; n + 1 < other.count; ++n) {
+        const auto found = candidate(star, {other.target(), other.neighbours[n], other.neighbours[n + 1]});
+        if (found && meets_a_face(star, *found, 1)) return true;
+    }
+    return false;
 }
 
 template <class Real>
@@ -79,7 +94,9 @@ void Crossings<Real>::find_cubes(const Star& star) {
 // Each triangle in these cubes once, but for the star's own.
 template <class Real>
 void Crossings<Real>::find_candidates(const Star& star) {
-    for (std::size_t n = 0; n < star.count; ++n) seen_triangles_.add(star.triangles[n]);
+    for (std::size_t n = 0; n < star.count; ++n) {
+        if (star.triangles[n] != kNone) seen_triangles_.add(star.triangles[n]);
+    }
     candidates_.clear();
     for (const std::int32_t cube : cubes_) {
         if (!seen_cubes_.add(cube)) continue;
@@ -91,7 +108,9 @@ void Crossings<Real>::find_candidates(const Star& star) {
     }
     for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
     for (const std::int32_t triangle : candidates_) seen_triangles_.forget_near(triangle);
-    for (std::size_t n = 0; n < star.count; ++n) seen_triangles_.forget_near(star.triangles[n]);
+    for (std::size_t n = 0; n < star.count; ++n) {
+        if (star.triangles[n] != kNone) seen_triangles_.forget_near(star.triangles[n]);
+    }
     for (const std::int32_t triangle : candidates_) {
         for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)
             prefetch(mesh_.places.data() + corner);
@@ -100,10 +119,10 @@ void Crossings<Real>::find_candidates(const Star& star) {
 
 // Nothing if the triangle is clearly apart from all faces.
 template <class Real>
-auto Crossings<Real>::candidate(const Star& star, std::int32_t number) const -> std::optional<Candidate> {
-    const Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
+auto Crossings<Real>::candidate(const Star& star, const std::array<std::int32_t, 3>& corners) const
+    -> std::optional<Candidate> {
     const auto& origin = mesh_.places[static_cast<std::size_t>(star.centre)].at;
-    Candidate out{triangle.corners, {-1, -1, -1}, {}};
+    Candidate out{corners, {-1, -1, -1}, {}};
     for (std::size_t n = 0; n < 3; ++n)
         out.at[n] = mesh_.relative(mesh_.places[static_cast<std::size_t>(out.numbers[n])].at, origin);
     for (std::size_t a = 0; a < 3; ++a) {

@@ -40,8 +40,9 @@ class Crossings {
     Crossings(const Mesh<Real>& mesh, const TriangleGrid& grid)
         : mesh_(mesh), grid_(grid), seen_cubes_(grid.cube_count()), seen_triangles_(mesh.triangles.size()) {}
 
-    // Do the faces meet anything that they should not? facets: star.draw()'s.
-    bool are_there(const Star& star, const Facets& facets);
+    // Do the faces meet anything that they should not? facets: star.draw()'s. others: stars of the same vertex, in
+    // other sheets, which are drawn at the same time: their faces count, their triangles do not.
+    bool are_there(const Star& star, const Facets& facets, const std::vector<const Star*>& others);
 
     // The cubes that face n of the last star touches.
     const std::vector<std::int32_t>& cubes_of_faces() const { return cubes_; }
@@ -59,7 +60,8 @@ class Crossings {
     void prepare(const Star& star, const Facets& facets);
     void find_cubes(const Star& star);
     void find_candidates(const Star& star);
-    std::optional<Candidate> candidate(const Star& star, std::int32_t triangle) const;
+    std::optional<Candidate> candidate(const Star& star, const std::array<std::int32_t, 3>& corners) const;
+    bool meets_faces_of(const Star& star, const Star& other) const;
     bool meets_a_face(const Star& star, const Candidate& candidate, std::size_t first_face) const;
     Corners3 exact(const std::array<std::int32_t, 3>& numbers) const;
 

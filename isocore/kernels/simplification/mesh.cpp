@@ -45,6 +45,7 @@ Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::a
     }
     number_vertices(input, cells);
     number_triangles(input);
+    number_sheets(input);
     find_rings();
     add_planes();
 }
@@ -110,7 +111,10 @@ void Mesh<Real>::find_rings() {
             rings_[starts[static_cast<std::size_t>(corner)]++] = static_cast<std::int32_t>(t);
     }
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-        if (!vertices[v].odd) order_ring(static_cast<std::int32_t>(v));
+        if (has_sheets())
+            order_fans(static_cast<std::int32_t>(v));  // sheets.cpp
+        else if (!vertices[v].odd)
+            order_ring(static_cast<std::int32_t>(v));
     }
 }
 
@@ -118,39 +122,48 @@ void Mesh<Real>::find_rings() {
 template <class Real>
 void Mesh<Real>::order_ring(std::int32_t number) {
     Vertex& vertex = vertices[static_cast<std::size_t>(number)];
+    const Fan fan = order_fan(number, vertex.ring, vertex.count);
+    vertex.open = fan.open;
+    vertex.odd = fan.odd;
+}
+
+template <class Real>
+auto Mesh<Real>::order_fan(std::int32_t number, std::int32_t* ring, std::size_t count) const -> Fan {
+    Fan out;
     std::array<std::int32_t, Vertex::kMostTriangles> from, to;  // the neighbours between which a triangle lies
-    const std::size_t count = vertex.count;
     for (std::size_t n = 0; n < count; ++n) {
-        const Triangle& triangle = triangles[static_cast<std::size_t>(vertex.ring[n])];
+        const Triangle& triangle = triangles[static_cast<std::size_t>(ring[n])];
         const std::size_t index = triangle.index_of(number);
         from[n] = triangle.after(index);
         to[n] = triangle.after(index == 2 ? 0 : index + 1);
-        if (from[n] == number || to[n] == number || from[n] == to[n]) vertex.odd = true;
+        if (from[n] == number || to[n] == number || from[n] == to[n]) out.odd = true;
     }
     const auto exchange = [&](std::size_t a, std::size_t b) {
-        std::swap(vertex.ring[a], vertex.ring[b]);
+        std::swap(ring[a], ring[b]);
         std::swap(from[a], from[b]);
         std::swap(to[a], to[b]);
     };
     for (std::size_t n = 0; n < count; ++n) {  // the first is one to which none leads, if there is such a one
         if (std::find(to.begin(), to.begin() + count, from[n]) == to.begin() + count) {
             exchange(0, n);
-            vertex.open = true;
+            out.open = true;
             break;
         }
     }
     for (std::size_t n = 1; n < count; ++n) {
         const auto found = std::find(from.begin() + n, from.begin() + count, to[n - 1]);
         if (found == from.begin() + count) {
-            vertex.odd = true;
-            return;
+            out.odd = true;
+            return out;
         }
         exchange(n, static_cast<std::size_t>(found - from.begin()));
     }
-    if (count > 0 && !vertex.open && to[count - 1] != from[0]) vertex.odd = true;
-    if (count > 0 && vertex.open &&
-        std::find(from.begin(), from.begin() + count, to[count - 1]) != from.begin() + count)
-        vertex.odd = true;
+    if (count == 0) return out;
+    out.first = from[0];
+    out.last = to[count - 1];
+    if (!out.open && out.last != out.first) out.odd = true;
+    if (out.open && std::find(from.begin(), from.begin() + count, out.last) != from.begin() + count) out.odd = true;
+    return out;
 }
 
 template <class Real>
@@ -183,6 +196,7 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, Simplified<Real>& out) cons
         if (triangle.is_gone()) continue;
         for (const std::int32_t corner : triangle.corners)
             out.triangles.push_back(numbers[static_cast<std::size_t>(corner)]);
+        if (has_sheets()) out.left.push_back(original_triangles_[static_cast<std::size_t>(t)]);
     }
 }
 

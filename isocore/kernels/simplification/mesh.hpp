@@ -38,12 +38,18 @@ struct Triangle {
 };
 
 struct Vertex {
-    std::int32_t* ring = nullptr;  // its triangles, counter-clockwise; from border to border, where it lies there
-    std::uint64_t failed = 0;      // by place in the ring: the triangle's side that begins here was tried in vain
-    std::uint16_t count = 0;       // of triangles; 0 once it is gone
-    bool open = false;             // on the border
-    bool odd = false;              // its triangles are neither one ring nor one fan: it stays
-    bool movable = false;          // may be contracted onto a neighbour now
+    std::int32_t* ring =
+        nullptr;               // its triangles, counter-clockwise; from border to border, where it lies there; on a
+                               // curve those of one sheet after the other, each from one neighbour on it to the other
+    std::uint64_t failed = 0;  // by place in the ring: the triangle's side that begins here was tried in vain
+    std::uint16_t count = 0;   // of triangles; 0 once it is gone
+    bool open = false;         // on the border
+    bool odd = false;          // its triangles are neither one ring nor one fan: it stays
+    bool on_curve = false;     // sheets meet here, each as one fan between the same two neighbours
+    bool is_joint = false;     // sheets meet here in any other way: it is odd, but others may be contracted onto it
+    bool movable = false;      // may be contracted onto a neighbour now
+
+    bool may_move() const { return count > 0 && !odd && !open; }
 
     static constexpr std::size_t kMostTriangles = 62;  // around a vertex that may move, or to which another moves
 };
@@ -84,17 +90,43 @@ class Mesh {
     Array<float> proved;           // by triangle: how far its points lie from the reference, at most
     Array<std::int32_t> original;  // the vertices' numbers in the input
 
+    // The sheet of a triangle; 0 where the mesh is not made of sheets.
+    std::uint32_t sheet_of(std::int32_t triangle) const {
+        return sheets_.empty() ? 0 : sheets_[static_cast<std::size_t>(triangle)];
+    }
+    bool has_sheets() const { return !sheets_.empty(); }
+    // The two neighbours on its curve that a vertex on one had in the input.
+    const std::array<std::int32_t, 2>& along(std::int32_t vertex) const {
+        return along_[static_cast<std::size_t>(vertex)];
+    }
+    // Where the fans of a vertex on a curve end in its ring; returns how many there are.
+    std::size_t find_fans(const Vertex& vertex, std::array<std::size_t, Vertex::kMostTriangles>& ends) const;
+    // The neighbours on its curve of a vertex on one: where its first fan begins, and where it ends.
+    std::array<std::int32_t, 2> ends_of(std::int32_t vertex) const;
+    // Makes each vertex on a curve a witness of every sheet that meets there.
+    void add_curve_witnesses();
+
   private:
     void number_vertices(const MeshArrays<Real>& input, const Cells& cells);
     void number_triangles(const MeshArrays<Real>& input);
     void find_rings();
+    // How some triangles follow each other around a vertex: in a ring, or from one neighbour to another.
+    struct Fan {
+        bool open = false, odd = false;
+        std::int32_t first = kNone, last = kNone;
+    };
+    Fan order_fan(std::int32_t vertex, std::int32_t* ring, std::size_t count) const;
     void order_ring(std::int32_t vertex);
+    void order_fans(std::int32_t vertex);
+    void number_sheets(const MeshArrays<Real>& input);
     void add_planes();
 
     Spot stretch_;
     Array<std::int32_t> renumbered_;  // by number in the input
     Array<std::int32_t> original_triangles_;
     Array<std::int32_t> rings_;
+    Array<std::uint32_t> sheets_;                     // by triangle
+    std::vector<std::array<std::int32_t, 2>> along_;  // by vertex
 };
 
 }  // namespace isocore::simplification

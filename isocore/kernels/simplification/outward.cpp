@@ -18,8 +18,9 @@ void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
         for (std::size_t a = 0; a < 3; ++a) places_[a][count] = at[a];
         ++count;
     };
-    add(ring.centre);
+    if (!mesh.vertices[static_cast<std::size_t>(ring.centre)].on_curve) add(ring.centre);
     for (std::size_t n = 0; n < ring.count; ++n) {
+        if (ring.triangles[n] == kNone) continue;
         std::int32_t witness = mesh.triangles[static_cast<std::size_t>(ring.triangles[n])].witness;
         for (; witness != kNone; witness = mesh.places[static_cast<std::size_t>(witness)].next) add(witness);
     }
@@ -52,8 +53,9 @@ bool Witnesses::are_near(const Facets& facets, float limit) {
 
 template <class Real>
 void Witnesses::hand_over(Mesh<Real>& mesh, const Star& star) const {
-    for (std::size_t n = 0; n < star.count; ++n)
-        mesh.triangles[static_cast<std::size_t>(star.triangles[n])].witness = kNone;
+    for (std::size_t n = 0; n < star.count; ++n) {
+        if (star.triangles[n] != kNone) mesh.triangles[static_cast<std::size_t>(star.triangles[n])].witness = kNone;
+    }
     for (std::size_t n = count_; n-- > 0;) {
         const std::size_t face = static_cast<std::size_t>(nearest_[n]) + 1;
         Triangle& triangle = mesh.triangles[static_cast<std::size_t>(star.triangles[face])];

@@ -18,7 +18,8 @@ namespace isocore::simplification {
 // The witnesses of a star.
 class Witnesses {
   public:
-    // Takes those of the star's triangles, and the star's centre, which becomes one.
+    // Takes those of the star's triangles, and the star's centre, which becomes one, unless it lies on a curve: then it
+    // is one already, of each sheet there.
     template <class Real>
     void gather(const Mesh<Real>& mesh, const Ring& ring);
     // Does each lie within the limit of one of these facets? Keeps in mind of which it is nearest to.

@@ -24,7 +24,7 @@ void Box::add(const Box& other) {
 
 template <class Real>
 void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
-                   const Box& box) {
+                   const Box& box, std::uint32_t sheet) {
     const Cells& cells = reference.cells();
     Cell low, high;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -38,22 +38,26 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
     size_ = 0;
     reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
         if (size_ + (end - first) + kLanes > room_) make_room(2 * (size_ + (end - first)) + 16 * kLanes);
-        float* const to = numbers_.data() + size_;
+        float* to = numbers_.data() + size_;
         for (std::uint32_t entry = first; entry < end; ++entry) {
             const std::int32_t triangle = reference.entry(entry);
+            if (!reference.is_in(triangle, sheet)) continue;
             for (std::size_t n = 0; n < 3; ++n) {
                 const Spot at = mesh.relative(reference.corner(triangle, n), origin);
-                for (std::size_t a = 0; a < 3; ++a) to[(3 * n + a) * room_ + (entry - first)] = at[a];
+                for (std::size_t a = 0; a < 3; ++a) to[(3 * n + a) * room_] = at[a];
             }
-            to[kBorder * room_ + (entry - first)] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
+            to[kBorder * room_] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
+            ++to;
         }
-        size_ += end - first;
+        size_ = static_cast<std::size_t>(to - numbers_.data());
     });
     end();
 }
 
-template void Patch::gather(const Reference<float>&, const Mesh<float>&, const std::array<float, 3>&, const Box&);
-template void Patch::gather(const Reference<double>&, const Mesh<double>&, const std::array<double, 3>&, const Box&);
+template void Patch::gather(const Reference<float>&, const Mesh<float>&, const std::array<float, 3>&, const Box&,
+                            std::uint32_t);
+template void Patch::gather(const Reference<double>&, const Mesh<double>&, const std::array<double, 3>&, const Box&,
+                            std::uint32_t);
 
 void Patch::select(const Patch& from, const Box& box) {
     size_ = 0;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/facets.hpp"
@@ -22,10 +23,10 @@ struct Box {
 class Patch {
   public:
     std::size_t size() const { return size_; }
-    // Takes all triangles in cells that touch a box around `origin`.
+    // Takes all triangles of a sheet in cells that touch a box around `origin`.
     template <class Real>
     void gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
-                const Box& box);
+                const Box& box, std::uint32_t sheet);
     // Takes those of another patch whose boxes touch this one.
     void select(const Patch& from, const Box& box);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace isocore::simplification {
 
@@ -82,7 +83,20 @@ void Reference<Real>::find_border() {
     }
     at_border_.resize(mesh_.vertex_count);
     std::transform(sums.begin(), sums.end(), at_border_.begin(), [](std::uint32_t sum) { return sum != 0; });
+    if (mesh_.sheets != nullptr) find_curves();
     has_border_ = std::find(at_border_.begin(), at_border_.end(), 1) != at_border_.end();
+}
+
+// Where sheets meet, each of them ends.
+template <class Real>
+void Reference<Real>::find_curves() {
+    std::vector<std::uint32_t> sheet_at(mesh_.vertex_count, std::numeric_limits<std::uint32_t>::max());
+    for (std::size_t n = 0; n < 3 * mesh_.triangle_count; ++n) {
+        const auto v = static_cast<std::size_t>(mesh_.triangles[n]);
+        const std::uint32_t sheet = mesh_.sheets[n / 3];
+        if (sheet_at[v] == std::numeric_limits<std::uint32_t>::max()) sheet_at[v] = sheet;
+        if (sheet_at[v] != sheet) at_border_[v] = 1;
+    }
 }
 
 template class Reference<float>;

@@ -44,7 +44,10 @@ class Reference {
         const Real* at = mesh_.vertices + 3 * vertex(triangle, n);
         return {at[0], at[1], at[2]};
     }
-    // Is a side of the triangle on the surface's border, or could it be?
+    bool is_in(std::int32_t triangle, std::uint32_t sheet) const {
+        return mesh_.sheets == nullptr || mesh_.sheets[triangle] == sheet;
+    }
+    // Is a side of the triangle on its sheet's border, or could it be?
     bool may_be_at_border(std::int32_t triangle) const {
         if (!has_border_) return false;
         return at_border_[vertex(triangle, 0)] + at_border_[vertex(triangle, 1)] + at_border_[vertex(triangle, 2)] > 1;
@@ -67,6 +70,7 @@ class Reference {
     template <class Visit>
     void each_entry(const Visit& visit) const;
     void find_border();
+    void find_curves();
 
     MeshArrays<Real> mesh_;
     Cells cells_;

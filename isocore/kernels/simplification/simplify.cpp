@@ -39,6 +39,7 @@ class Simplification {
         for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options.max_error));
         enter_triangles();
         find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
+        if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
         if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
     }
 
@@ -64,11 +65,11 @@ class Simplification {
             for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
                 Vertex& vertex = mesh_.vertices[v];
                 vertex.failed = 0;
-                vertex.movable = vertex.count > 0 && !vertex.open && !vertex.odd;
+                vertex.movable = vertex.may_move();
                 if (vertex.movable) movable.push_back(static_cast<std::int32_t>(v));
             }
             const auto surplus = [&] {
-                const std::size_t left = input_.triangle_count - 2 * worker.collapses;
+                const std::size_t left = input_.triangle_count - worker.vanished;
                 return left > options_.most_triangles ? (left - options_.most_triangles + 1) / 2 : 0;
             };
             sweep(movable, mesh_, worker, costs_, surplus());
@@ -81,9 +82,13 @@ class Simplification {
         mesh_.take(input_, out);
         for (const auto& worker : workers_) {
             out.facts.collapses += worker->collapses;
-            for (std::size_t n = 0; n < kRules; ++n) out.facts.refused[n] += worker->refused[n];
+            for (const auto& refused : worker->refused()) {
+                for (std::size_t n = 0; n < kRules; ++n) out.facts.refused[n] += refused[n];
+            }
         }
+        out.facts.sheets.resize(input_.sheet_count);
         measure(out.facts);
+        describe_sheets(out.facts);
         return out;
     }
 
@@ -121,8 +126,7 @@ class Simplification {
         }
         for (std::size_t v = 0; v < box_of.size(); ++v) {
             Vertex& vertex = mesh_.vertices[v];
-            vertex.movable =
-                vertex.count > 0 && !vertex.open && !vertex.odd && has_ring_in_box(vertex, box_of[v], box_of);
+            vertex.movable = vertex.may_move() && has_ring_in_box(vertex, box_of[v], box_of);
             if (vertex.movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
         }
         std::erase_if(boxes, [](const auto& box) { return box.empty(); });
@@ -152,14 +156,30 @@ class Simplification {
                 ++facts.unproved;
             else
                 facts.back_max = std::max(facts.back_max, static_cast<double>(proved));
-            measure(mesh_.triangles[t], mesh_.stretch(), facts.error);
-            if (!is_one_unit) measure(mesh_.triangles[t], other, facts.other);
+            const Deviation error = measure(mesh_.triangles[t], mesh_.stretch());
+            const Deviation in_other = is_one_unit ? error : measure(mesh_.triangles[t], other);
+            facts.error.add(error);
+            facts.other.add(in_other);
+            if (!mesh_.has_sheets()) continue;
+            SheetFacts& sheet = facts.sheets[mesh_.sheet_of(static_cast<std::int32_t>(t))];
+            sheet.error.add(error);
+            sheet.other.add(in_other);
+            sheet.unproved += static_cast<std::size_t>(std::isinf(proved));
+            if (!std::isinf(proved)) sheet.back_max = std::max(sheet.back_max, static_cast<double>(proved));
         }
-        if (is_one_unit) facts.other = facts.error;
     }
 
-    void measure(const Triangle& triangle, const Spot& stretch, Deviation& sum) {
-        if (triangle.witness == kNone) return;
+    void describe_sheets(Facts& facts) const {
+        for (std::size_t sheet = 0; sheet < facts.sheets.size(); ++sheet) {
+            for (const auto& worker : workers_) {
+                for (std::size_t n = 0; n < kRules; ++n) facts.sheets[sheet].refused[n] += worker->refused()[sheet][n];
+            }
+        }
+    }
+
+    Deviation measure(const Triangle& triangle, const Spot& stretch) {
+        Deviation sum;
+        if (triangle.witness == kNone) return sum;
         const auto& origin = mesh_.places[static_cast<std::size_t>(triangle.corners[0])].at;
         const auto place = [&](std::int32_t number) {
             const auto& at = mesh_.places[static_cast<std::size_t>(number)].at;
@@ -174,10 +194,9 @@ class Simplification {
             const Spot at = place(w);
             const auto squared = static_cast<double>(facet_.from_points(0, {at[0], at[1], at[2]}).first());
             if (!(squared >= 0)) continue;  // a triangle without an area
-            sum.max = std::max(sum.max, std::sqrt(squared));
-            sum.sum += std::sqrt(squared);
-            sum.squares += squared;
+            sum.add({std::sqrt(squared), std::sqrt(squared), squared});
         }
+        return sum;
     }
 
     MeshArrays<Real> input_;

@@ -10,6 +10,7 @@ void Ring::gather(const Mesh<Real>& mesh, std::int32_t vertex) {
     const auto& origin = mesh.places[static_cast<std::size_t>(vertex)].at;
     centre = vertex;
     count = middle.count;
+    sheet = count > 0 ? mesh.sheet_of(middle.ring[0]) : 0;
     for (std::size_t n = 0; n < count; ++n) {
         triangles[n] = middle.ring[n];
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles[n])];
@@ -20,12 +21,50 @@ void Ring::gather(const Mesh<Real>& mesh, std::int32_t vertex) {
     for (std::size_t a = 0; a < 3; ++a) Floats(0.0f).store(places[a].data() + count);
 }
 
+template <class Real>
+void Ring::take_neighbour(const Mesh<Real>& mesh, std::size_t n, std::int32_t neighbour) {
+    neighbours[n] = neighbour;
+    const Spot at = mesh.relative(mesh.places[static_cast<std::size_t>(neighbour)].at,
+                                  mesh.places[static_cast<std::size_t>(centre)].at);
+    for (std::size_t a = 0; a < 3; ++a) places[a][n] = at[a];
+}
+
+template <class Real>
+void Ring::gather_fan(const Mesh<Real>& mesh, std::int32_t vertex, std::size_t begin, std::size_t end) {
+    const std::int32_t* const ring = mesh.vertices[static_cast<std::size_t>(vertex)].ring;
+    centre = vertex;
+    count = end - begin + 1;
+    sheet = mesh.sheet_of(ring[begin]);
+    for (std::size_t n = begin; n < end; ++n) {
+        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(ring[n])];
+        const std::size_t index = triangle.index_of(vertex);
+        triangles[n - begin] = ring[n];
+        take_neighbour(mesh, n - begin, triangle.after(index));
+        if (n + 1 == end) take_neighbour(mesh, n + 1 - begin, triangle.after(index == 2 ? 0 : index + 1));
+    }
+    triangles[count - 1] = kNone;
+}
+
+template <class Real>
+void Ring::gather_ends(const Mesh<Real>& mesh, std::int32_t vertex) {
+    const auto ends = mesh.ends_of(vertex);
+    centre = vertex;
+    count = ends.size();
+    for (std::size_t n = 0; n < count; ++n) take_neighbour(mesh, n, ends[n]);
+    for (std::size_t a = 0; a < 3; ++a) Floats(0.0f).store(places[a].data() + count);
+}
+
 template void Ring::gather(const Mesh<float>&, std::int32_t);
 template void Ring::gather(const Mesh<double>&, std::int32_t);
+template void Ring::gather_fan(const Mesh<float>&, std::int32_t, std::size_t, std::size_t);
+template void Ring::gather_fan(const Mesh<double>&, std::int32_t, std::size_t, std::size_t);
+template void Ring::gather_ends(const Mesh<float>&, std::int32_t);
+template void Ring::gather_ends(const Mesh<double>&, std::int32_t);
 
 void Star::turn(const Ring& ring, std::size_t target) {
     centre = ring.centre;
     count = ring.count;
+    sheet = ring.sheet;
     const auto rotate = [&](const auto& from, auto& to) {
         std::copy(from.begin() + target, from.begin() + count, to.begin());
         std::copy(from.begin(), from.begin() + target, to.begin() + (count - target));

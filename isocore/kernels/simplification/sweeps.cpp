@@ -29,7 +29,10 @@ class Sweep {
     }
 
     void look_at(std::int32_t vertex) {
-        ring_.gather(mesh_, vertex);
+        if (mesh_.vertices[static_cast<std::size_t>(vertex)].on_curve)
+            ring_.gather_ends(mesh_, vertex);
+        else
+            ring_.gather(mesh_, vertex);
         const Quadric& quadric = mesh_.quadrics[static_cast<std::size_t>(vertex)];
         for (std::size_t n = 0; n < ring_.count; n += kLanes) quadric.at(ring_.in_lanes(n)).store(each_.data() + n);
         for (std::size_t n = 0; n < ring_.count; ++n) {
@@ -57,17 +60,26 @@ class Sweep {
 
   private:
     void wake_neighbours() {
-        const Star& star = contraction_.star();
-        costs_[static_cast<std::size_t>(star.centre)] = kInfinity;
-        const auto target = static_cast<std::size_t>(star.target());
+        const Star& first = contraction_.star(0);
+        costs_[static_cast<std::size_t>(first.centre)] = kInfinity;
+        const auto target = static_cast<std::size_t>(first.target());
         if (mesh_.vertices[target].movable) costs_[target] = 0;
-        for (std::size_t n = 1; n < star.count; ++n) {
-            const auto other = static_cast<std::size_t>(star.neighbours[n]);
-            if (!mesh_.vertices[other].movable) continue;
-            const Spot way = mesh_.relative(mesh_.places[target].at, mesh_.places[other].at);
-            const float cost = std::max(0.0f, mesh_.quadrics[other].at(way)) + mesh_.quadrics[target].constant();
-            costs_[other] = std::min(costs_[other], cost);
+        const bool along_curve = contraction_.star_count() > 1;
+        for (std::size_t part = 0; part < contraction_.star_count(); ++part) {
+            const Star& star = contraction_.star(part);
+            for (std::size_t n = 1; n < star.count; ++n) {
+                const std::int32_t number = star.neighbours[n];
+                const Vertex& other = mesh_.vertices[static_cast<std::size_t>(number)];
+                if (other.movable && (!other.on_curve || (along_curve && number == star.other_end())))
+                    wake(static_cast<std::size_t>(number), target);
+            }
         }
+    }
+
+    void wake(std::size_t other, std::size_t target) {
+        const Spot way = mesh_.relative(mesh_.places[target].at, mesh_.places[other].at);
+        const float cost = std::max(0.0f, mesh_.quadrics[other].at(way)) + mesh_.quadrics[target].constant();
+        costs_[other] = std::min(costs_[other], cost);
     }
 
     Mesh<Real>& mesh_;

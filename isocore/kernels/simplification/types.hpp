@@ -1,10 +1,12 @@
 // types.hpp - What simplification is asked for (Options), and what it gives (Simplified).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "common/array.hpp"
 
@@ -31,6 +33,20 @@ inline constexpr std::size_t kRules = 5;
 // Distances from the reference's vertices to the surface: the largest, their sum, and the sum of their squares.
 struct Deviation {
     double max = 0, sum = 0, squares = 0;
+
+    void add(const Deviation& other) {
+        max = std::max(max, other.max);
+        sum += other.sum;
+        squares += other.squares;
+    }
+};
+
+// What is said of one sheet.
+struct SheetFacts {
+    std::array<std::size_t, kRules> refused{};  // by Rule: edges inside it, and edges of curves that it did not allow
+    std::size_t unproved = 0;
+    Deviation error, other;
+    double back_max = 0;
 };
 
 struct Facts {
@@ -40,6 +56,7 @@ struct Facts {
     Deviation error, other;                     // stretched, and in the other unit
     double back_max =
         0;  // no point of the surface, but for those triangles, lies further from the reference, stretched
+    std::vector<SheetFacts> sheets;  // none where the surface is not made of sheets
 };
 
 template <class Real>
@@ -47,16 +64,22 @@ struct Simplified {
     Array<Real> vertices;           // x, y, z of each
     Array<std::int32_t> triangles;  // three vertex numbers each
     Array<std::int32_t> kept;       // of each vertex: its number in the input
+    Array<std::int32_t> left;       // of each triangle: its number in the input
     Facts facts;
 };
 
 // Vertices, x, y, z of each, and triangles, three vertex numbers each.
+//
+// A mesh may be made of sheets, parts that meet in curves: then a side that no other triangle of the same sheet shares
+// belongs to a curve. No two sheets turn about the same side more than once.
 template <class Real>
 struct MeshArrays {
     const Real* vertices;
     std::size_t vertex_count;
     const std::int32_t* triangles;
     std::size_t triangle_count;
+    const std::uint32_t* sheets = nullptr;  // of each triangle: the number of its sheet
+    std::size_t sheet_count = 0;
 };
 
 }  // namespace isocore::simplification
