@@ -98,6 +98,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
         volumes=options.reading.volume,
         steps=StepChoice(options.steps or (), options.times or ()),
         labels=labels,
+        merge=options.merge_isovalues,
         written=written,
         read=lists,
     )
@@ -191,6 +192,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         force=asked.force,
         ambiguities=asked.ambiguities,
         colour=asked.colour,
+        compress=asked.compress,
         colormap=asked.colormap,
         color_by=asked.color_by,
         color_range=asked.color_range,

@@ -85,6 +85,8 @@ OUTPUT = (
         show_default=f"by the suffix of -o, else {FORMATS[0]}",
         help="What surfaces are written as, binary where the format can be.",
     ),
+    _output("--merge-isovalues", is_flag=True, help="One file of all isovalues of an input, each a part of it."),
+    _output("--compress", is_flag=True, help="Pack the arrays of vtp, by zlib."),
     _output(
         "--name",
         metavar="TEMPLATE",

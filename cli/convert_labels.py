@@ -26,6 +26,7 @@ def label_request(options: ConvertOptions) -> LabelRequest | None:
         (options.backend != "auto", "-b"),
         (options.ambiguities, "--ambiguities"),
         (options.cap, "--cap"),
+        (options.merge_isovalues, "--merge-isovalues"),
     ):
         if given:
             raise click.UsageError(f"--labels {options.labels}: does not go with {option}; leave one of them out")

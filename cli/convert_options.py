@@ -52,6 +52,8 @@ class ConvertOptions:
     fill_bubbles: bool
     output: Path | None
     output_dir: Path | None
+    merge_isovalues: bool
+    compress: bool
     format: Format | None
     name: str | None
     space: Space

@@ -18,13 +18,13 @@ from isocore.digits import exact
 from isocore.errors import OptionError
 from isocore.labels import Label
 
-Format: TypeAlias = Literal["ply", "obj", "stl", "glb", "gii"]
+Format: TypeAlias = Literal["ply", "obj", "stl", "glb", "gii", "vtp"]
 #: What surfaces are written as; the first is the default.
 FORMATS: tuple[Format, ...] = get_args(Format)
 #: Those that hold a normal for every vertex.
-SHADED_FORMATS = frozenset({"ply", "obj", "glb", "gii"})
+SHADED_FORMATS = frozenset({"ply", "obj", "glb", "gii", "vtp"})
 #: Those that hold fields of the vertices.
-FIELD_FORMATS = frozenset({"ply", "glb", "gii"})
+FIELD_FORMATS = frozenset({"ply", "glb", "gii", "vtp"})
 #: Methods by name; the first is chosen by the field and by what is asked of it.
 BACKEND_NAMES = ("auto", "asc", "thinning", "mc")
 #: What the coordinates of vertices may mean; as volume.Space.

@@ -94,6 +94,7 @@ class Job:
     colormap, color_by, color_range: how the vertices are coloured by a field that `read_options.carry` carries; None:
         viridis, the first of them, from its smallest to its largest value on the surface.
     ambiguities: where the ambiguous faces go, for a job of one target.
+    compress: pack the arrays of a format that can be packed, which is VTP.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
     refusal: why the source is not even tried, such as a folder that cannot be searched; the job fails with it.
@@ -118,6 +119,7 @@ class Job:
     colormap: str | None = None
     color_by: str | None = None
     color_range: tuple[float, float] | None = None
+    compress: bool = False
     if_changed: bool = False
     force: bool = False
     refusal: str = ""
@@ -125,6 +127,8 @@ class Job:
     def __post_init__(self) -> None:
         if isinstance(self.offset, str):
             object.__setattr__(self, "offset", parse_about(self.offset))
+        if self.compress and self.format != "vtp":
+            raise OptionError(f"--compress: packs the arrays of VTP, and {self.format} has no such thing; leave it out")
         if self.format == "gii" and self.space in ("lps", "las"):
             raise OptionError(f"--space {self.space}: GIFTI is in RAS; leave it out, or choose another format with -f")
 

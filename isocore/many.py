@@ -64,6 +64,8 @@ def convert_files(
     colormap: str | None = None,
     color_by: str | None = None,
     color_range: tuple[float, float] | None = None,
+    merge_isovalues: bool = False,
+    compress: bool = False,
 ) -> BatchReport:
     """Convert files, and all that folders hold, as `isocore convert` does: what happens to one stops no others.
 
@@ -79,6 +81,7 @@ def convert_files(
     reports: files to write the report to, each in the format of its suffix.
     carry: other fields by name, "all" of them, or files of volumes on the same grid, for the vertices of each surface;
         colormap, color_by, color_range: how these colour GLB and PLY.
+    merge_isovalues: one file of all isovalues of an input. compress: pack the arrays of VTP.
     done: called with the report of each output as soon as it is known.
 
     Returns the report of each output in the order of the inputs: what failed has the status "failed" and a message.
@@ -103,6 +106,7 @@ def convert_files(
             colormap=None if colormap is None else parse_colormap(colormap),
             color_by=color_by,
             color_range=color_range,
+            compress=compress,
             space=space,
             reference=reference,
             require=tuple(require),
@@ -110,7 +114,8 @@ def convert_files(
         )
         naming = Naming(output_dir=None if output_dir is None else Path(output_dir), template=name)
         wanted = None if labels is None else LabelRequest(labels=parse_labels(labels), background=background)
-        planned = _planned([Path(one) for one in _several(inputs)], isovalues, pattern, naming, volume, wanted, saved)
+        paths = [Path(one) for one in _several(inputs)]
+        planned = _planned(paths, isovalues, pattern, naming, volume, wanted, merge_isovalues, saved)
         for path in saved:
             renderer_for(path)
     workers = 0 if len(planned) == 1 and timeout is None else min(at_once, len(planned))
@@ -128,6 +133,7 @@ def _planned(
     naming: Naming,
     volume: int | str | None,
     labels: LabelRequest | None,
+    merge: bool,
     reports: list[Path],
 ) -> list[Job]:
     """Everything that can be refused without opening a file, then the jobs."""
@@ -138,20 +144,27 @@ def _planned(
     check_template(naming.template or "")
     choices = distinct(choice for one in _several(isovalues) for choice in choices_of(one))
     if labels is not None:
-        if choices != (Auto(),) or pattern.backend is not None or pattern.options.cap:
-            raise OptionError(f"labels {labels.labels}: do not go with isovalues, backend or cap; leave those out")
+        if choices != (Auto(),) or pattern.backend is not None or pattern.options.cap or merge:
+            raise OptionError(
+                f"labels {labels.labels}: do not go with isovalues, merge_isovalues, backend or cap; leave those out"
+            )
         pattern = replace(pattern, options=replace(pattern.options, background=labels.background))
     written = [("reports", path) for path in reports]
-    return plan(find_inputs(inputs), choices, pattern, naming, volumes=volume, labels=labels, written=written)
+    found = find_inputs(inputs)
+    return plan(
+        found, choices, pattern, naming, volumes=volume, labels=labels, merge=merge, written=written
+    )
 
 
 def _run(jobs: list[Job], batch: Batch, done: Callable[[RunReport], object] | None) -> tuple[RunReport, ...]:
     """The reports, in the order of the jobs and their targets whatever is ready first."""
     targets = [(job, target) for job in jobs for target in job.targets]
-    places = {(id(job), str(target.output)): place for place, (job, target) in enumerate(targets)}
+    places = {
+        (id(job), str(target.output), str(target.choice)): place for place, (job, target) in enumerate(targets)
+    }
     runs: dict[int, RunReport] = {}
     for job, run in run_jobs(jobs, batch):
-        runs[places[id(job), run.output]] = run
+        runs[places[id(job), run.output, run.asked.asked]] = run
         if done is not None:
             done(run)
     return tuple(run for _, run in sorted(runs.items()))

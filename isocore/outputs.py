@@ -24,6 +24,7 @@ from isocore.writers import WRITERS
 from isocore.writers.colormaps import coloured, magnitudes, range_of
 from isocore.writers.obj import write_materials, write_obj
 from isocore.writers.ply import write_ply_points
+from isocore.writers.vtp import write_vtp
 
 _NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --normals adds none; write PLY or OBJ"
 
@@ -112,8 +113,9 @@ class Sink:
         elif self._job.together:
             name = f"{self._job.source.name.split('.')[0]}_{choice}".lstrip("_")
             part = Part(name=name, colour=colour, isovalue=isovalue, **counts)
-        elif colour is not None or self._job.format == "glb":
-            part = Part(name=self._job.source.name.split(".")[0] or "surface", colour=colour, **counts)
+        elif colour is not None or self._job.format in ("glb", "vtp"):
+            own = isovalue if self._job.format == "vtp" else None
+            part = Part(name=self._job.source.name.split(".")[0] or "surface", colour=colour, isovalue=own, **counts)
         else:
             return surface
         return replace(surface, parts=(part,))
@@ -131,6 +133,8 @@ def write_target(surface: Surface, target: Target, job: Job) -> Written:
         stream = _Hashed(opened or sys.stdout.buffer)
         if materials:
             write_obj(cast(BinaryIO, stream), surface, job.options.threads, materials.name)
+        elif job.format == "vtp":
+            write_vtp(cast(BinaryIO, stream), surface, job.options.threads, compress=job.compress, time=job.time)
         else:
             WRITERS[f".{job.format}"](cast(BinaryIO, stream), surface, job.options.threads)
         if to_stdout:

@@ -176,6 +176,7 @@ def _asked(job: Job, target: Target) -> Asked:
             offset=None if job.offset is None else str(job.offset),
             ignore=job.read_options.ignore or None,
             carry=job.read_options.carry or None,
+            compress=job.compress or None,
             merge_isovalues=(job.together and not any(isinstance(one.choice, Label) for one in job.targets)) or None,
         ),
     )

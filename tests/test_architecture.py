@@ -82,7 +82,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "batches/frames": set(),
     "batches/leftovers": {"whole_file"},
     "batches/stamps": BATCHED | {"readers"},
-    "batches/depfile": BATCHED | {"readers"},
+    "batches/collection": BATCHED | {"readers", "batches/places"},
+    "batches/depfile": BATCHED | {"readers", "batches/collection"},
     "batches/places": {"errors"},
     "batches/inputs": BATCHED | {"readers", "batches/places"},
     "batches/naming": BATCHED | {"batches/inputs"},
@@ -91,13 +92,14 @@ MAY_IMPORT: dict[str, set[str]] = {
     | {"readers", "batches/inputs", "batches/label_targets", "batches/naming", "batches/places", "batches/steps"},
     "batches/steps": {"digits", "errors"},
     "batches/one_job": BATCHED | {"readers", "memory", "pipeline", "batches/stamps"},
-    "batches/dry_run": BATCHED | {"batches/one_job", "batches/stamps"},
+    "batches/dry_run": BATCHED | {"batches/collection", "batches/one_job", "batches/stamps"},
     "batches/worker": BATCHED | {"batches/frames", "batches/one_job"},
     "batches/worker_process": BATCHED | {"batches/frames"},
     "batches/workers": BATCHED | {"pipeline", "batches/frames", "batches/leftovers", "batches/worker_process"},
     "batches/cluster": BATCHED | {"batches/leftovers", "pipeline", "batches/one_job"},
     "batches/run": BATCHED
-    | {"batches/cluster", "batches/leftovers", "batches/one_job", "batches/stamps", "batches/workers"},
+    | {"batches/cluster", "batches/collection", "batches/leftovers", "batches/one_job", "batches/stamps"}
+    | {"batches/workers"},
 }
 
 #: Modules without a Python file.

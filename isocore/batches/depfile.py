@@ -7,9 +7,10 @@ end of a line. No name of a file may become a command: those that cannot be quot
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 
+from isocore.batches.collection import collections_of
 from isocore.job import STDOUT, Job
 from isocore.readers import carried_files, files_of
 
@@ -18,7 +19,7 @@ _UNSPEAKABLE = re.compile(r"[\x00-\x1f\x7f;=|%]|\\$")
 _SPECIAL = re.compile(r"(\\*)([ #:*?\[])")
 
 
-def depfile_text(jobs: Iterable[Job]) -> tuple[str, list[Path]]:
+def depfile_text(jobs: Sequence[Job]) -> tuple[str, list[Path]]:
     """Rules as compilers write them, and the files that are left out since make cannot name them.
 
     An input without a rule of its own stays optional, so that it may vanish.
@@ -35,6 +36,12 @@ def depfile_text(jobs: Iterable[Job]) -> tuple[str, list[Path]]:
         if made:
             rules.append(f"{' '.join(made)}: {' '.join(needed)}\n")
             rules += [f"{file}:\n" for file in needed]
+    for collection in collections_of(jobs):
+        surfaces = dict.fromkeys(target.output for job in collection.jobs for target in job.targets)
+        left_out |= dict.fromkeys(path for path in (collection.path, *surfaces) if _UNSPEAKABLE.search(str(path)))
+        if collection.path not in left_out:
+            listed = " ".join(_quoted(path) for path in surfaces if path not in left_out)
+            rules.append(f"{_quoted(collection.path)}: {listed}\n")
     return "".join(rules), list(left_out)
 
 

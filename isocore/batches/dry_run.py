@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from isocore.batches import stamps
+from isocore.batches.collection import collections_of
 from isocore.batches.one_job import estimate
 from isocore.job import Job
 
@@ -21,3 +22,5 @@ def plan_lines(jobs: Sequence[Job]) -> Iterator[str]:
             what = f"run ({reason})" if reason else "skip (up to date)"
             memory = f", about {estimate(job) / 2**20:,.0f} MiB" if reason else ""
             yield f"{job.source} -> {target.output}: isovalue {target.choice}, {what}{memory}"
+    for collection in collections_of(jobs):
+        yield f"{collection.jobs[0].source} -> {collection.path}: lists {collection.left:,} surfaces with their times"

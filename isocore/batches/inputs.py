@@ -15,7 +15,7 @@ from pathlib import Path, PurePath
 
 from isocore.batches.places import Folders
 from isocore.errors import OptionError
-from isocore.readers import SEARCHED, files_of, listed_files, stranger_of, suffix_of
+from isocore.readers import SEARCHED, files_of, listed_files, lists_surfaces, stranger_of, suffix_of
 
 #: Files of a folder without inputs that are looked at, so that a message can say what they are.
 _LOOKED_AT = 50
@@ -115,7 +115,7 @@ def _spelled_out(folder: Path) -> Path:
 def _search(root: Path) -> list[Input]:
     """The files below a folder that lead to data, then the folders that could not be searched."""
     errors: list[OSError] = []
-    files = [path for path in _walk(root, errors) if suffix_of(path) in SEARCHED]
+    files = [path for path in _walk(root, errors) if suffix_of(path) in SEARCHED and not lists_surfaces(path)]
     detached = {os.path.normpath(file) for path in files for file in files_of(path)[1:]}
     found = [Input(path, root) for path in files if os.path.normpath(path) not in detached]
     for error in errors:

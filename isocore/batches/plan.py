@@ -37,6 +37,7 @@ def plan(
     volumes: int | str | None = None,
     steps: StepChoice = StepChoice(),  # noqa: B008
     labels: LabelRequest | None = None,
+    merge: bool = False,
     written: Sequence[Named] = (),
     read: Sequence[Named] = (),
 ) -> list[Job]:
@@ -44,17 +45,22 @@ def plan(
 
     volumes: "all" makes one job per volume, for which the header is read; a file whose header cannot be read
     stays one job, which will say why.
+    merge: all isovalues of an input go into one file.
     written, read: further files that the command writes and reads.
 
     Raises OptionError where an output or a file of `written` would overwrite an input, a file that belongs to one,
     or each other; where names alone are the trouble the message says which would do.
     """
     asked = _Asked(choices, labels)
-    if naming.output is not None and (len(inputs) != 1 or (len(choices) != 1 and labels is None)):
+    several_allowed = merge or labels is not None
+    if naming.output is not None and (len(inputs) != 1 or (len(choices) != 1 and not several_allowed)):
+        advice = "; use -d, or --merge-isovalues" if len(inputs) == 1 else "; use -d"
         raise OptionError(
-            f"-o {naming.output}: takes one input and one isovalue, not {len(inputs)} and {len(choices)}; use -d"
+            f"-o {naming.output}: takes one input and one isovalue, not {len(inputs)} and {len(choices)}{advice}"
         )
-    if naming.output is not None and labels is not None:
+    if merge and "{isovalue}" in (naming.template or ""):
+        raise OptionError(f"--name {naming.template}: with --merge-isovalues one file has all; leave out {{isovalue}}")
+    if merge or (naming.output is not None and labels is not None):
         pattern = replace(pattern, together=True)
     patterns = [(item, one) for item in inputs for one in _per_step(item, pattern, volumes, steps)]
     if naming.output is not None and len(patterns) > 1:
@@ -63,10 +69,12 @@ def plan(
     try:
         refuse_overwriting(jobs, written=written, read=read)
     except _Clash as clash:
-        several, each = len(choices) > 1, any(one.read_options.volume is not None for _, one in patterns)
+        several, each = len(choices) > 1 and not merge, any(one.read_options.volume is not None for _, one in patterns)
         stepped = any(one.read_options.step is not None for _, one in patterns)
         default = default_template(several=several, volumes=each, labels=labels is not None, steps=stepped)
         for template in other_templates(naming.template or default):
+            if merge and "{isovalue}" in template:
+                continue
             other = [_job(item, asked, one, replace(naming, template=template)) for item, one in patterns]
             if _is_free(other, written, read):
                 raise OptionError(f"{clash}; tell them apart with --name {template}") from clash
@@ -128,7 +136,7 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
         raise
     except Exception as error:
         return _job(replace(item, refusal=told(item.path, error)), asked, pattern, naming)
-    several = len(choices) > 1
+    several = len(choices) > 1 and not pattern.together
     targets = tuple(
         Target(choice, output_of(item, choice, pattern, naming, several=several)) for choice in choices
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from isocore.batches import stamps
 from isocore.batches.cluster import run_on_cluster
+from isocore.batches.collection import Collections
 from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import estimate, guarded
 from isocore.batches.workers import Limits, run_in_workers
@@ -38,12 +39,15 @@ def run_jobs(
     batch = batch or Batch()
     outputs = [target.output for job in jobs for target in job.targets if target.output != STDOUT]
     remove_parts([*outputs, *map(stamps.stamp_path, outputs)])
-    runs = _runs(jobs, batch, at)
-    with closing(runs):
-        for job, run in runs:
-            yield job, run
-            if batch.fail_fast and run.status == "failed":
-                return
+    runs, lists = _runs(jobs, batch, at), Collections(jobs)
+    try:
+        with closing(runs):
+            for job, run in runs:
+                yield job, lists.add(job, run)
+                if batch.fail_fast and run.status == "failed":
+                    return
+    finally:
+        lists.finish()
 
 
 def _runs(

@@ -62,7 +62,8 @@ def stamp_path(output: Path, part: str = "") -> Path:
 def _stamp_path(job: Job, target: Target) -> Path:
     """Where the stamp of a target lies; targets that share an output have one each."""
     choice = target.choice
-    return stamp_path(target.output, f".{choice.value}" if job.together and isinstance(choice, Label) else "")
+    part = str(choice.value if isinstance(choice, Label) else choice)
+    return stamp_path(target.output, f".{part}" if job.together else "")
 
 
 def input_hash(job: Job) -> str:
@@ -96,6 +97,7 @@ def options_hash(job: Job, target: Target) -> str:
     asked["options"] = asdict(replace(job.options, threads=1, normals=job.normals))
     asked["read_options"] = asdict(job.read_options)
     asked["choice"] = target.choice
+    asked["beside"] = [one.choice for one in job.targets] if job.together else []
     return sha256(json.dumps(asked, default=str).encode()).hexdigest()
 
 

@@ -94,6 +94,15 @@ def listed_files(path: Path) -> tuple[Path, ...]:
     return files_of(path)[1:] if suffix is not None and BY_SUFFIX[suffix].lists else ()
 
 
+def lists_surfaces(path: Path) -> bool:
+    """Whether a file is a list of surfaces, such as isocore writes beside those of a series. Never an error."""
+    if suffix_of(path) != ".pvd":
+        return False
+    from isocore.readers.series import lists_surfaces as lists  # late: most folders hold no series
+
+    return lists(path)
+
+
 def stranger_of(path: Path) -> str | None:
     """What a file or a folder of an unknown suffix is, and what to do about it; None where nothing is known."""
     return what_it_is(path, BY_SUFFIX, None) if suffix_of(path) is None else None
@@ -170,6 +179,7 @@ __all__ = [
     "count_volumes",
     "files_of",
     "listed_files",
+    "lists_surfaces",
     "offered_fields",
     "read",
     "stranger_of",

@@ -73,6 +73,14 @@ def series_files(path: Path, step: int | None = None) -> tuple[Path, ...]:
     return tuple(found)
 
 
+def lists_surfaces(path: Path) -> bool:
+    """Does it list surfaces, as isocore does beside those of a series, and nothing to contour? Never an error."""
+    try:
+        return all(file.name.lower().endswith(".vtp") for step in _steps(path) for file in step.files)
+    except Exception:  # whatever a damaged file leads to
+        return False
+
+
 def _chosen(path: Path, number: int | None) -> Step:
     steps = _steps(path)
     if number is None and len(steps) > 1:
@@ -102,6 +110,8 @@ def _format(path: Path, file: Path) -> Format:
     name = file.name.lower()
     suffix = max((suffix for suffix in BY_SUFFIX if name.endswith(suffix)), key=len, default=None)
     if suffix is None or BY_SUFFIX[suffix].times(file):
+        if name.endswith(".vtp"):
+            raise InputError(f"{path}: lists surfaces, as {file.name}; name the series that they were made from")
         raise InputError(f"{path}: names {file}, which is not read; it may name VTU, PVTU, VTI and legacy VTK files")
     return BY_SUFFIX[suffix]
 

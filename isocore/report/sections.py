@@ -31,6 +31,7 @@ class Given:
     ignore: tuple[float, ...] | None = None
     carry: tuple[str, ...] | None = None
     merge_isovalues: bool | None = None
+    compress: bool | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,6 +21,7 @@ from isocore.writers.obj import write_obj
 from isocore.writers.ply import write_ply
 from isocore.writers.rounding import rounded
 from isocore.writers.stl import write_stl
+from isocore.writers.vtp import write_vtp
 
 Writer = Callable[[BinaryIO, Surface, int], None]
 
@@ -31,6 +32,7 @@ WRITERS: dict[str, Writer] = {
     ".stl": write_stl,
     ".glb": write_glb,
     ".gii": write_gifti,
+    ".vtp": write_vtp,
 }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import struct
+import zlib
 from base64 import b64decode
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy.typing as npt
 #: Vertices (v, 3), float32 or float64 as in the file, finite; triangles (t, 3), each corner the number of a vertex.
 Mesh = tuple[npt.NDArray[np.floating[Any]], npt.NDArray[np.int32]]
 
+_VTP_TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8"}
 _PLY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "int": "<i4"}
 
 
@@ -93,6 +95,37 @@ def _read_gifti(data: bytes) -> Mesh:
     return vertices, triangles.astype(np.int32)
 
 
+def _read_vtp(data: bytes) -> Mesh:
+    start = data.index(b'<AppendedData encoding="raw">\n_') + len(b'<AppendedData encoding="raw">\n_')
+    head, packed = data[:start].decode(), b"vtkZLibDataCompressor" in data[:200]
+    found: dict[str, npt.NDArray[Any]] = {}
+    section = ""
+    for tag, attributes in re.findall(r"<(\w+)((?: \w+=(?:\"[^\"]*\"|'[^']*'))*)/?>", head):
+        said = dict(re.findall(r'(\w+)="([^"]*)"', attributes))
+        if tag == "DataArray" and section in ("Points", "Polys"):
+            unpack = _vtp_unpacked if packed else _vtp_plain
+            found[said["Name"]] = np.frombuffer(unpack(data, start + int(said["offset"])), _VTP_TYPES[said["type"]])
+        section = section if tag == "DataArray" else tag
+    corners = found["connectivity"].reshape(-1, 3)
+    if (found["offsets"] != np.arange(3, 3 * len(corners) + 1, 3)).any():
+        raise ValueError("holds more than triangles")
+    return found["Points"].reshape(-1, 3), corners.astype(np.int32)
+
+
+def _vtp_plain(data: bytes, at: int) -> bytes:
+    (size,) = struct.unpack_from("<Q", data, at)
+    return data[at + 8 : at + 8 + size]
+
+
+def _vtp_unpacked(data: bytes, at: int) -> bytes:
+    count, size, _ = struct.unpack_from("<3Q", data, at)
+    sizes = np.frombuffer(data, "<u8", count, at + 24)
+    ends = (at + 24 + 8 * count + np.cumsum(sizes)).tolist()
+    begins = [end - length for end, length in zip(ends, sizes.tolist(), strict=True)]
+    blocks = (data[begin:end] for begin, end in zip(begins, ends, strict=True))
+    return b"".join(zlib.decompressobj().decompress(block, size) for block in blocks)
+
+
 def _read_stl(data: bytes) -> Mesh:
     count = int(np.frombuffer(data, "<u4", 1, 80)[0])
     facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -117,4 +150,5 @@ READ_BACK: dict[str, Callable[[bytes], Mesh]] = {
     ".obj": _read_obj,
     ".ply": _read_ply,
     ".stl": _read_stl,
+    ".vtp": _read_vtp,
 }
