@@ -77,6 +77,8 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
 
     from isocore.batches.plan import Naming, check_template, find_inputs, plan  # late: readers bring numpy
     from isocore.batches.steps import StepChoice
+    from isocore.copies import triangles_each
+    from isocore.report.copies_found import copies_path, has_copies_beside
 
     labels = label_request(options)
     pattern = _pattern(options, format_, requirements)
@@ -85,6 +87,8 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     naming = Naming(output=options.output, output_dir=options.output_dir, template=options.name)
     choices = _choices_of(options)
     written = [("--report", path) for path in options.reports]
+    if any(path.suffix.lower() == ".html" for path in options.reports):
+        written += [("--report", copies_path(path)) for path in options.reports if has_copies_beside(path)]
     more = (("--depfile", options.depfile), ("--ambiguities", options.ambiguities))
     written += [(option, path) for option, path in more if path is not None]
     lists = [("--files-from", path) for path in (options.files_from,) if path not in (None, Path("-"))]
@@ -104,8 +108,11 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     )
     if options.ambiguities and (len(jobs) != 1 or len(jobs[0].targets) != 1):
         raise click.UsageError(f"--ambiguities {options.ambiguities}: is one file; give one input and one isovalue")
+    pages = [path for path in options.reports if path.suffix.lower() == ".html"]
+    surfaces = sum(len(job.targets) for job in jobs)
+    page_triangles = triangles_each(options.page_size, surfaces) if pages else 0
     threads = options.threads or max(1, default_threads() // min(options.at_once, len(jobs)))
-    return [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
+    return [replace(job, options=replace(job.options, threads=threads), page_triangles=page_triangles) for job in jobs]
 
 
 def _choices_of(options: ConvertOptions) -> tuple[Choice, ...]:

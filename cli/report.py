@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -11,6 +12,9 @@ from .console import say
 from .groups import GroupedCommand
 from .options import PATH
 from .values import Memory
+
+if TYPE_CHECKING:
+    from isocore.report import BatchReport
 
 #: Of the columns of a comparison: whether set to the right, in which place it leaves a narrow screen, and whether it
 #: holds names.
@@ -52,7 +56,7 @@ def report(
     """
     from isocore.batches.places import refuse_overwriting_files
     from isocore.errors import IsocoreError
-    from isocore.report import load_report, merged, renderer_for, save_report
+    from isocore.report import load_report, merged, renderer_for, save_report, with_copies
     from isocore.report.limits import check_limits, parse_limit
 
     from .console import say_table
@@ -86,7 +90,13 @@ def report(
         if found.share_nothing and not parsed:
             say("isocore: warning: the reports share no output, so nothing was compared")
         context.exit(3 if broken else 0)
+    pages = [target for target in targets if target.suffix.lower() == ".html"]
+    if pages and page_size:
+        room = page_size // len(batches)
+        batches = [with_copies(one, room, path) for one, path in zip(batches, reports, strict=True)]
     batch = merged(batches)
+    if pages and page_size:
+        _say_lacking(batch, pages[0])
     unwritten = False
     for target in targets:
         try:
@@ -97,3 +107,14 @@ def report(
     if not targets:
         say_table(batch)
     context.exit(1 if unwritten else 0)
+
+
+def _say_lacking(batch: BatchReport, page: Path) -> None:
+    """How many surfaces a page is to show and cannot, and what to do."""
+    lacking = [run for run in batch.outputs if run.triangles and run.output != "-" and run.copy is None]
+    if lacking:
+        total = sum(run.triangles > 0 for run in batch.outputs)
+        say(
+            f"isocore: warning: {page}: has no copy of {len(lacking)} of {total} surfaces: {lacking[0].output} is not "
+            "where the report says, or changed; let convert write the page, or keep its .json.copies file beside it"
+        )

@@ -15,7 +15,8 @@ from isocore.batches.run import Batch, run_jobs
 from isocore.errors import IsocoreError, one_line, printable
 from isocore.job import Job, Target
 from isocore.memory import free_bytes
-from isocore.report import BatchReport, RunReport, github_annotations, save_report
+from isocore.report import BatchReport, RunReport, github_annotations, save_copies, save_report
+from isocore.report.copies_found import has_copies_beside, working_folder
 from isocore.whole_file import whole_file
 
 from .console import Progress, say, say_table
@@ -56,7 +57,7 @@ class Records:
         """The records in the order of the command."""
         runs = tuple(run for _, run in sorted(self._runs.items()))
         end = perf_counter() if self._end is None else self._end
-        return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=end - self._start)
+        return BatchReport(runs, arguments=tuple(sys.argv[1:]), seconds=end - self._start, folder=working_folder())
 
     def finish(self) -> None:
         """No record comes any more: stop the clock, and save every report once more."""
@@ -78,6 +79,8 @@ class Records:
         self.unsaved.pop(path, None)
         try:
             save_report(self.batch(), path, mesh_bytes=mesh_bytes)
+            if mesh_bytes and has_copies_beside(path):
+                save_copies(self.batch(), path)
         except IsocoreError as error:
             self.unsaved[path] = str(error)
         except Exception as error:  # of a report no fault is worth a batch

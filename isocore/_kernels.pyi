@@ -95,6 +95,11 @@ def simplify(
     threads: int = 1,
 ) -> SimplifiedMesh: ...
 
+# a mesh to look at: vertices, triangles, and of each vertex its number before
+def sketch(
+    vertices: _Real, triangles: _Int32, cell: float, most_triangles: int
+) -> tuple[_Real, _Int32, _Int32]: ...
+
 class AmbiguousFaces(NamedTuple):
     places: _Float64  # (n, 3), index space: the saddle of each face
     distances: _Float64  # (n,), of the saddle's value from the isovalue

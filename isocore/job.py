@@ -97,6 +97,7 @@ class Job:
     compress: pack the arrays of a format that can be packed, which is VTP.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
+    page_triangles: of the copy of each surface that its report holds for a page; 0 for none.
     refusal: why the source is not even tried, such as a folder that cannot be searched; the job fails with it.
     """
 
@@ -122,6 +123,7 @@ class Job:
     compress: bool = False
     if_changed: bool = False
     force: bool = False
+    page_triangles: int = 0
     refusal: str = ""
 
     def __post_init__(self) -> None:

@@ -16,12 +16,14 @@ from isocore.batches.plan import Naming, check_template, find_inputs, plan
 from isocore.batches.run import Batch, run_jobs
 from isocore.choices import Auto, Format, distinct
 from isocore.colormaps import parse_colormap
+from isocore.copies import triangles_each
 from isocore.errors import OptionError
 from isocore.job import Job, Options
 from isocore.labels import parse_labels
 from isocore.memory import free_bytes, processors
 from isocore.readers.options import ReadOptions
-from isocore.report import BatchReport, RunReport, renderer_for, save_report
+from isocore.report import MESH_BYTES, BatchReport, RunReport, renderer_for, save_report
+from isocore.report.copies_found import working_folder
 from isocore.volume import Space
 
 Name: TypeAlias = os.PathLike[str] | str
@@ -118,9 +120,12 @@ def convert_files(
         planned = _planned(paths, isovalues, pattern, naming, volume, wanted, merge_isovalues, saved)
         for path in saved:
             renderer_for(path)
+    if any(path.suffix.lower() == ".html" for path in saved):
+        most = triangles_each(MESH_BYTES, sum(len(job.targets) for job in planned))
+        planned = [replace(job, page_triangles=most) for job in planned]
     workers = 0 if len(planned) == 1 and timeout is None else min(at_once, len(planned))
     batch = Batch(workers=workers, seconds_per_job=timeout, memory_bytes=free_bytes())
-    result = BatchReport(_run(planned, batch, done), seconds=perf_counter() - start)
+    result = BatchReport(_run(planned, batch, done), seconds=perf_counter() - start, folder=working_folder())
     for path in saved:
         save_report(result, path)
     return result

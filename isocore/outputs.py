@@ -105,11 +105,11 @@ class Sink:
 
     def _dressed(self, surface: Surface, target: Target, isovalue: float) -> Surface:
         """The surface with what is known of it: labels, what is given a colour, and isovalues that share a file."""
-        choice, colour = target.choice, self._job.colour
+        choice, colour = target.choice, colour_of(target, self._job)
         counts = {"vertices": len(surface.vertices), "triangles": len(surface.triangles)}
         if isinstance(choice, Label):
             name = choice.name or choice.file_name or f"label_{choice.value}"
-            part = Part(name=name, colour=colour or choice.colour, label=choice.value, **counts)
+            part = Part(name=name, colour=colour, label=choice.value, **counts)
         elif self._job.together:
             name = f"{self._job.source.name.split('.')[0]}_{choice}".lstrip("_")
             part = Part(name=name, colour=colour, isovalue=isovalue, **counts)
@@ -119,6 +119,11 @@ class Sink:
         else:
             return surface
         return replace(surface, parts=(part,))
+
+
+def colour_of(target: Target, job: Job) -> tuple[int, int, int] | None:
+    """What a surface is given: the job's colour, or its label's."""
+    return job.colour or (target.choice.colour if isinstance(target.choice, Label) else None)
 
 
 def write_target(surface: Surface, target: Target, job: Job) -> Written:

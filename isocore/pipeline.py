@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
+from isocore.copies import copied
 from isocore.errors import FieldError, InputError, IsocoreError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
@@ -17,7 +18,7 @@ from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
-from isocore.outputs import Sink, carried_facts, check_colours, format_warnings, write_ambiguities
+from isocore.outputs import Sink, carried_facts, check_colours, colour_of, format_warnings, write_ambiguities
 from isocore.pieces import check_unit, keep_pieces
 from isocore.readers import files_of, read
 from isocore.remarks import border, emptiness
@@ -121,6 +122,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     findings=named(findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
+                    copy=copied(surface, job.page_triangles, colour_of(target, job)),
                 )
                 del found, kept, surface, form
                 yield requirements_checked(reference.compared(run), job)

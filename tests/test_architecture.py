@@ -22,7 +22,9 @@ NOUNS = {"errors", "version", "digits", "choices", "colormaps", "labels", "piece
 KERNELS = {"_kernels", "_processor"}
 FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "remarks", "segmentation"}
 #: What the one path is made of.
-STAGES = {"readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory", "whole_file"}
+STAGES = {"copies", "readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory"} | {
+    "whole_file"
+}  # fmt: skip
 #: What becomes of coordinates on their way to the file.
 PLACES = {"offset", "outputs", "pieces", "rounded_error"}
 #: Importing one file of a batch tells nothing about another: each says for itself what it knows of the others.
@@ -51,6 +53,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "job": {"choices", "errors", "labels", "piece_sizes", "readers/options", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
+    "copies": {"surface", "methods/simplifying"},
     "readers": {"arrays", "digits", "errors", "volume", "cell_mesh", "carried"} | KERNELS,
     "readers/options": set(),
     "apart": KERNELS,
@@ -61,7 +64,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "colormaps", "errors", "surface", "volume", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
-    | {"digits", "writers/read_back"}
+    | {"copies", "digits", "surface", "writers/read_back"}
     | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},
@@ -75,7 +78,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
     "api": NOUNS | FIELD_ROOMS | {"backends", "pieces"},
-    "many": NOUNS | {"api", "backends", "batches", "memory", "readers/options", "report"},
+    "many": NOUNS | {"api", "backends", "batches", "copies", "memory", "readers/options", "report"},
     "exchange": {"errors"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),

@@ -16,10 +16,10 @@ import pytest
 import shapes_mesh
 from small_files import ball, write_nifti
 
+from isocore.copies import copied
 from isocore.job import Job, Target
 from isocore.pipeline import convert
 from isocore.report import BatchReport, RunReport, run_from_dict, save_report
-from isocore.report.reduce import packed, reduced
 from isocore.surface import Surface
 from isocore.writers import FORMATS, write
 from isocore.writers.read_back import read_mesh
@@ -56,20 +56,19 @@ def test_a_surface_of_any_size_is_drawn_at_its_place(tmp_path: Path, scale: floa
     write(Surface(vertices, sphere.triangles), tmp_path / "mesh.ply")
     mesh = read_mesh(tmp_path / "mesh.ply")
     assert mesh is not None and mesh[0].dtype == np.float64
-    small = reduced(mesh, most)
-    copy = packed(small)
-    assert copy is not None and 20 < len(small[1]) <= most
-    drawn = unpacked(copy) / scale
+    copy = copied(Surface(*mesh), most)
+    assert copy is not None and 20 < copy.count <= most
+    drawn = unpacked(copy.as_dict()) / scale
     assert np.allclose(drawn.min(axis=0), sphere.vertices.min(axis=0), atol=0.5)
     radii, expected = np.linalg.norm(drawn, axis=1), np.linalg.norm(sphere.vertices, axis=1)
     assert expected.min() * 0.8 < radii.min() and radii.max() < expected.max() * 1.01
-    json.dumps(copy, allow_nan=False)
+    json.dumps(copy.as_dict(), allow_nan=False)
 
 
 def test_a_surface_longer_than_a_double_can_say_has_no_copy() -> None:
     """Rather than one with an infinite side."""
     vertices = np.array([[-1.5e308, 0, 0], [1.5e308, 0, 0], [0, 1, 0]])
-    assert packed((vertices, np.array([[0, 1, 2]], np.int32))) is None
+    assert copied(Surface(vertices, np.array([[0, 1, 2]], np.int32)), 1000) is None
 
 
 @pytest.mark.parametrize("format", ["ply", "obj"])
@@ -105,7 +104,8 @@ def test_a_damaged_output_costs_the_page_one_copy(tmp_path: Path, format: str) -
         refused += mesh is None
         if mesh is not None:
             assert np.isfinite(mesh[0]).all() and set(mesh[1].ravel().tolist()) <= set(range(len(mesh[0])))
-            json.dumps(packed(reduced(mesh, 200)), allow_nan=False)
+            small = copied(Surface(mesh[0].astype(np.float64), mesh[1]), 200)
+            assert small is None or json.dumps(small.as_dict(), allow_nan=False)
     assert refused > 100
 
 

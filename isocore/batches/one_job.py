@@ -11,6 +11,7 @@ from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
 from isocore.readers import content_bytes
+from isocore.report.copies_found import file_copies
 from isocore.report.record import RunReport
 
 
@@ -48,6 +49,8 @@ def _changed(job: Job) -> Iterator[RunReport]:
             skipped[target] = requirements_checked(earlier, job)
     if job.together and left:  # one file, so all or nothing
         left, skipped = list(job.targets), {}
+    if job.page_triangles:
+        skipped = _with_copies(skipped, job)
     made = convert(replace(job, targets=tuple(left))) if left else iter(())
     for target in job.targets:
         if target in skipped:
@@ -57,6 +60,18 @@ def _changed(job: Job) -> Iterator[RunReport]:
         if run.status in ("done", "empty") and target.output != STDOUT:
             run = _stamped(job, target, source_hash, run)
         yield run
+
+
+def _with_copies(skipped: dict[Target, RunReport], job: Job) -> dict[Target, RunReport]:
+    """What is up to date, with copies of the surfaces for a page; targets of one file have a part of it each."""
+    files: dict[str, list[Target]] = {}
+    for target, run in skipped.items():
+        files.setdefault(run.output, []).append(target)
+    for output, targets in files.items():
+        copies = file_copies(output, [skipped[target] for target in targets], job.page_triangles)
+        for target, copy in zip(targets, copies, strict=True):
+            skipped[target] = replace(skipped[target], copy=copy)
+    return skipped
 
 
 def _stamped(job: Job, target: Target, source_hash: str, run: RunReport) -> RunReport:

@@ -26,7 +26,7 @@ from isocore.whole_file import whole_file
 #: What of a job does not change what is written: where it comes from and goes, how it is judged, whether it is done.
 #: The last three change what else is made, and are asked about one by one; whatever else a job may be asked for counts.
 UNHASHED = frozenset(
-    ("source", "targets", "require", "max_triangles", "if_changed", "force", "refusal")
+    ("source", "targets", "require", "max_triangles", "if_changed", "force", "page_triangles", "refusal")
 ) | {"ambiguities", "reference", "self_intersections"}
 #: Bytes of a file's name beyond which file systems refuse it.
 _LONGEST_NAME = 255

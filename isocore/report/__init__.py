@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from isocore.errors import InputError, OptionError, reading
+from isocore.report.copies_found import copies_path, save_copies, with_copies
 from isocore.report.keys import SCHEMA, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
 from isocore.report.record import BatchReport, RunReport
 from isocore.report.render_benchmark import render_benchmark
@@ -45,9 +46,12 @@ def renderer_for(path: Path) -> Renderer:
 
 
 def save_report(batch: BatchReport, path: Path, *, mesh_bytes: int = MESH_BYTES) -> None:
-    """Write the report whole or not at all. mesh_bytes bounds the copies of the surfaces in a page."""
+    """Write the report whole or not at all.
+
+    mesh_bytes bounds the copies of the surfaces in a page, which are made from the meshes where a run has none.
+    """
     renderer = renderer_for(path)
-    text = render_html(batch, mesh_bytes=mesh_bytes) if renderer is render_html else renderer(batch)
+    text = render_html(batch, mesh_bytes=mesh_bytes, page=path) if renderer is render_html else renderer(batch)
     with whole_file(path) as stream:
         stream.write(text.encode())
 
@@ -71,9 +75,9 @@ def merged(batches: list[BatchReport]) -> BatchReport:
         return batches[0]
     runs = {(run.output, run.source, run.asked.asked): run for batch in batches for run in batch.outputs}
     first = batches[0]
-    return BatchReport(
-        tuple(runs.values()), first.arguments, sum(batch.seconds for batch in batches), first.tool, first.host
-    )
+    folder = first.folder if all(batch.folder == first.folder for batch in batches) else ""
+    seconds = sum(batch.seconds for batch in batches)
+    return BatchReport(tuple(runs.values()), first.arguments, seconds, first.tool, first.host, folder)
 
 
 __all__ = [
@@ -83,6 +87,7 @@ __all__ = [
     "RunReport",
     "batch_as_dict",
     "batch_from_dict",
+    "copies_path",
     "github_annotations",
     "load_report",
     "merged",
@@ -90,5 +95,7 @@ __all__ = [
     "renderer_for",
     "run_as_dict",
     "run_from_dict",
+    "save_copies",
     "save_report",
+    "with_copies",
 ]

@@ -67,6 +67,7 @@ def batch_as_dict(batch: BatchReport, *, outputs: bool = True) -> dict[str, Any]
         "schema": SCHEMA,
         "tool": plain(batch.tool),
         "host": plain(batch.host),
+        "folder": batch.folder,
         "arguments": list(batch.arguments),
         "outputs": [run_as_dict(run) for run in batch.outputs] if outputs else [],
         "totals": plain(batch.totals),
@@ -86,6 +87,7 @@ def run_from_dict(record: dict[str, Any], place: str = "", *, complete: bool = F
         "written": None if record.get("sha256") is None else built(Written, record, place, complete=complete),
         "field": None if record.get("kind") is None else built(FieldFacts, record, place, complete=complete),
         "findings": built(Findings, record, place, complete=complete),
+        "copy": None,
     }
     return built(RunReport, record, place, given=flat, needed=("status",), complete=complete)
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from isocore import _kernels
+from isocore.copies import Copy
 from isocore.errors import shortened
 from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
@@ -29,6 +30,7 @@ class RunReport:
     isovalue: the number; chosen: how it came about. backend_chosen: the same of the backend.
     offset: the point that vertices are written about, where one was asked for.
     peak_rss_bytes: of the job, before the reference ran; None where the system does not tell.
+    copy: of the surface, for a page; no key of the JSON report.
     message, warnings and missed are kept printable, each on one line.
     """
 
@@ -52,6 +54,7 @@ class RunReport:
     findings: Findings = dataclasses.field(default_factory=Findings)
     seconds: Seconds | None = None
     peak_rss_bytes: int | None = None
+    copy: Copy | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "message", shortened(self.message))
@@ -86,13 +89,14 @@ class RunReport:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BatchReport:
-    """All outputs of one command."""
+    """All outputs of one command; folder: the one that it ran in, where paths start that are not absolute."""
 
     outputs: tuple[RunReport, ...]
     arguments: tuple[str, ...] = ()
     seconds: float = 0.0
     tool: dict[str, Any] = dataclasses.field(default_factory=lambda: tool())
     host: dict[str, Any] = dataclasses.field(default_factory=lambda: host())
+    folder: str = ""
 
     def __repr__(self) -> str:
         """How many outputs there are, and what became of them."""

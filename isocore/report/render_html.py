@@ -1,54 +1,54 @@
-"""The report as one page that works offline: totals, table, and each surface to turn."""
+"""The report as one page that works offline: totals, table, and the surfaces to turn, each as a copy."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
-from typing import Any
+from urllib.parse import quote
 
+from isocore.report.copies_found import with_copies
 from isocore.report.keys import batch_as_dict
-from isocore.report.record import BatchReport, RunReport
-from isocore.report.reduce import BYTES_PER_TRIANGLE, MOST_TRIANGLES, packed, reduced
+from isocore.report.record import BatchReport
 from isocore.report.texts import shown_json
 
-#: Bytes of all reduced surfaces together, unless told otherwise.
+#: Bytes of all copies together, unless told otherwise.
 MESH_BYTES = 16 << 20
 _PARTS = Path(__file__).parent / "page"
-_FEWEST_TRIANGLES = 200
+_SCRIPTS = ("page.js", "facts.js", "viewer.js", "start.js")
 
 
-def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES) -> str:
-    """The page. mesh_bytes bounds what the copies of the surfaces add to it; 0 leaves them out."""
+def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES, page: Path | None = None) -> str:
+    """The page. mesh_bytes bounds what the copies of the surfaces add to it; 0 leaves them out.
+
+    page: where it will lie; it then has links to the meshes.
+    """
     record = batch_as_dict(batch)
-    shown = [n for n, run in enumerate(batch.outputs) if run.triangles and run.output != "-"]
     left = mesh_bytes
-    for place, number in enumerate(shown):
-        most = min(left // (len(shown) - place) // BYTES_PER_TRIANGLE, MOST_TRIANGLES)
-        if most < _FEWEST_TRIANGLES:
-            most = min(left // BYTES_PER_TRIANGLE, _FEWEST_TRIANGLES)
-        mesh = _copy(batch.outputs[number], most) if most else None
-        if mesh is not None:
-            size = len(mesh["vertices"]) + len(mesh["triangles"])
-            if size <= left:
-                record["outputs"][number]["mesh"] = mesh
-                left -= size
+    for one, run in zip(record["outputs"], with_copies(batch, mesh_bytes).outputs, strict=True):
+        if run.copy is not None and run.copy.size <= left:
+            left -= run.copy.size
+            one["mesh"] = run.copy.as_dict()
+        if page is not None and run.triangles and run.output != "-":
+            one["link"] = _link(run.output, batch.folder, page)
     parts = {
         "css": _part("page.css"),
         "three": _part("three.min.js"),
-        "js": _part("page.js"),
+        "js": "\n".join(map(_part, _SCRIPTS)),
         "report": shown_json(record).replace("</", "<\\/").replace("<!", "<\\u0021"),
     }
     before, *rest = _part("page.html").split("{{")
     return before + "".join(parts[name] + after for name, after in (part.split("}}", 1) for part in rest))
 
 
-def _copy(run: RunReport, most: int) -> dict[str, Any] | None:
-    from isocore.writers.read_back import read_mesh  # a report without surfaces to show loads no kernels
-
+def _link(output: str, folder: str, page: Path) -> str | None:
+    """The way from the page to a mesh; None where none leads there, as between the drives of Windows."""
+    places = [Path(folder) / output, Path(output)]
+    mesh = next((place for place in places if place.is_file()), places[0])
     try:
-        mesh = read_mesh(Path(run.output))
-        return None if mesh is None else packed(reduced(mesh, most))
-    except MemoryError:
+        way = os.path.relpath(os.path.realpath(mesh), os.path.realpath(page.parent))
+    except (OSError, ValueError):
         return None
+    return quote(os.fsencode(way.replace(os.sep, "/")))
 
 
 def _part(name: str) -> str:

@@ -25,7 +25,7 @@ bool Contraction<Real>::contract(const Ring& ring, std::size_t target) {
         count_ = 1;
         parts_[0].star.turn(ring, target);
     }
-    if (!are_allowed() || !are_apart()) return false;
+    if (!are_allowed() || (!is_sketch_ && !are_apart())) return false;
     commit();
     return true;
 }
@@ -52,6 +52,7 @@ bool Contraction<Real>::are_allowed() {
     for (std::size_t n = 0; n < count_; ++n) {
         if (!parts_[n].star.has_good_shapes()) return refuse(Rule::shape, parts_[n].star);
     }
+    if (is_sketch_) return true;
     if (mesh_.vertices[static_cast<std::size_t>(parts_[0].star.centre)].on_curve && !keeps_curve(parts_[0].star))
         return refuse(Rule::outward, parts_[0].star);
     for (std::size_t n = 0; n < count_; ++n) {
@@ -167,16 +168,7 @@ void Contraction<Real>::commit() {
     ++collapses;
     const auto centre = static_cast<std::size_t>(parts_[0].star.centre),
                target = static_cast<std::size_t>(parts_[0].star.target());
-    for (std::size_t p = 0; p < count_; ++p) {
-        const Star& star = parts_[p].star;
-        for (std::size_t n = 0; n < star.count; ++n) {
-            if (star.triangles[n] == kNone) continue;
-            cubes_.clear();
-            grid_.cubes_of(mesh_, star.triangles[n], cubes_);
-            grid_.remove(star.triangles[n], cubes_.data(), cubes_.size(), spare_);
-        }
-        parts_[p].witnesses.hand_over(mesh_, star);
-    }
+    for (std::size_t p = 0; p < count_ && !is_sketch_; ++p) take_out(parts_[p]);
     mesh_.quadrics[target].add(mesh_.quadrics[centre],
                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
     for (std::size_t p = 0; p < count_; ++p) enter_faces(parts_[p]);
@@ -191,12 +183,25 @@ void Contraction<Real>::commit() {
 }
 
 template <class Real>
+void Contraction<Real>::take_out(Part& part) {
+    const Star& star = part.star;
+    for (std::size_t n = 0; n < star.count; ++n) {
+        if (star.triangles[n] == kNone) continue;
+        cubes_.clear();
+        grid_.cubes_of(mesh_, star.triangles[n], cubes_);
+        grid_.remove(star.triangles[n], cubes_.data(), cubes_.size(), spare_);
+    }
+    part.witnesses.hand_over(mesh_, star);
+}
+
+template <class Real>
 void Contraction<Real>::enter_faces(const Part& part) {
     const Star& star = part.star;
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
         const std::int32_t number = star.triangles[n];
         Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
         triangle.corners[triangle.index_of(star.centre)] = star.target();
+        if (is_sketch_) continue;
         mesh_.proved[static_cast<std::size_t>(number)] = part.distances[n];
         if (count_ == 1) {
             const std::size_t first = crossings_.first_cube(n);

@@ -32,6 +32,8 @@ class Contraction {
     bool contract(const Ring& ring, std::size_t target);
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
+    // From now on the rules of topology and shape are all there is.
+    void sketch() { is_sketch_ = true; }
     // Of the last contraction: its star, or one for each sheet that meets on the curve.
     const Star& star(std::size_t n) const { return parts_[n].star; }
     std::size_t star_count() const { return count_; }
@@ -62,6 +64,7 @@ class Contraction {
     bool keeps_curve(const Star& star) const;
     float limit_here(const Star& star) const;
     void commit();
+    void take_out(Part& part);
     void enter_faces(const Part& part);
     void join_ring(const Star& star);
     void retire(const Star& star);
@@ -71,6 +74,7 @@ class Contraction {
     Mesh<Real>& mesh_;
     TriangleGrid& grid_;
     float limit_;
+    bool is_sketch_ = false;
     std::vector<Part> parts_{1};
     std::size_t count_ = 1;
     std::vector<const Star*> others_;

@@ -24,6 +24,9 @@ struct Options {
     // If not 0: stop when there are no more triangles than these. Smaller bounds are exhausted before larger ones.
     std::size_t most_triangles = 0;
     int threads = 1;
+    // With a number of triangles: keep topology and shapes alone. Nothing is bounded, proved or measured, and triangles
+    // may meet: for a copy to look at, many times faster.
+    bool is_sketch = false;
 };
 
 // Why an edge was not contracted; README.md has the rules.

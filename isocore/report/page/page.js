@@ -23,7 +23,13 @@ function make(tag, text = "", name = "") {
   return element;
 }
 
-const columns = [
+// Breaks where a name has parts.
+function breakable(cell) {
+  const parts = cell.textContent.split(/(?<=[-_.])/);
+  cell.replaceChildren(...parts.flatMap((part) => [document.createElement("wbr"), part]));
+}
+
+const allColumns = [
   { title: "file", value: (run) => fileName(run.output === "-" ? run.source : run.output), show: String },
   { title: "status", value: (run) => (run.missed.length ? run.status + ", missed" : run.status), show: String },
   { title: "isovalue", value: (run) => run.isovalue, show: precise, number: true },
@@ -35,6 +41,9 @@ const columns = [
   { title: "ref. s", value: (run) => dig(run, "reference.seconds"), show: short(3), number: true },
   { title: "closed", value: closed, show: String },
 ];
+
+// A column in which nothing stands is left out.
+const columns = allColumns.filter((column) => runs.length === 0 || runs.some((run) => column.show(column.value(run) ?? "") !== ""));
 
 function summarise() {
   const totals = report.totals;
@@ -63,8 +72,25 @@ function summarise() {
 }
 
 const rows = new Map();
+const boxes = new Map();
+
+function tickbox(title, act) {
+  const box = document.createElement("input");
+  box.type = "checkbox";
+  box.title = title;
+  box.setAttribute("aria-label", title);
+  box.onclick = (event) => {
+    event.stopPropagation();
+    act();
+  };
+  return box;
+}
 
 function fillTable() {
+  const all = make("th", "", "tick");
+  all.append(tickbox("show every surface of the table", () => (runs.some((run) => run.mesh && !rows.get(run).hidden && !shown.has(run))
+    ? show(runs.filter((run) => run.mesh && !rows.get(run).hidden)) : show([picked]))));
+  at("thead tr").append(all);
   for (const [index, column] of columns.entries()) {
     const head = make("th", "", column.number ? "number" : "");
     const button = make("button", column.title);
@@ -74,10 +100,21 @@ function fillTable() {
   }
   for (const run of runs) {
     const row = make("tr");
+    const tick = make("td", "", "tick");
+    if (run.mesh) {
+      const box = tickbox("show this surface with the others", () => show(box.checked ? [...shown, run] : [...shown].filter((other) => other !== run)));
+      tick.append(box);
+      boxes.set(run, box);
+    }
+    row.append(tick);
     for (const column of columns) {
       const cell = make("td", column.show(column.value(run)), column.number ? "number" : "");
       if (column.title === "status") {
         cell.classList.add(run.status === "failed" || run.missed.length ? "bad" : isEmpty(run) || run.warnings.length ? "warn" : "good");
+      }
+      if (column.title === "file") {
+        cell.classList.add("file");
+        breakable(cell);
       }
       row.append(cell);
     }
@@ -110,166 +147,3 @@ at("#filter").oninput = (event) => {
   }
 };
 
-function drawBars(run) {
-  const place = at("#bars");
-  place.replaceChildren();
-  const pairs = [
-    ["triangles", dig(run, "surface.triangles"), dig(run, "reference.triangles"), whole],
-    ["own s", ownSeconds(run), dig(run, "reference.seconds"), short(3)],
-  ];
-  for (const [title, ours, reference, show] of pairs) {
-    const top = Math.max(ours ?? 0, reference ?? 0);
-    if (!top) continue;
-    const names = [[`${title}`, ours, "ours"], [`${dig(run, "reference.name") ?? "reference"}`, reference, ""]];
-    for (const [name, value, kind] of names) {
-      if (value == null) continue;
-      const line = make("div", "", "bar");
-      const bar = make("i", "", kind);
-      bar.style.width = `${(100 * value) / top}%`;
-      const track = make("div");
-      track.append(bar);
-      line.append(make("span", name, "quiet"), track, make("b", show(value)));
-      place.append(line);
-    }
-  }
-  if (!place.children.length) place.append(make("p", "No reference was run.", "quiet"));
-}
-
-function drawHistogram(run) {
-  const place = at("#histogram");
-  place.replaceChildren();
-  const spread = run.histogram;
-  if (!spread?.counts?.length) {
-    place.append(make("p", "No samples were counted.", "quiet"));
-    return;
-  }
-  const [width, height, foot] = [480, 110, 16];
-  const svg = (tag, attributes, text = "") => {
-    const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    element.textContent = text;
-    return element;
-  };
-  const picture = svg("svg", { viewBox: `0 0 ${width} ${height + foot}`, role: "img" });
-  picture.append(svg("title", {}, "Histogram of the samples, logarithmic, with the isovalue"));
-  const step = width / spread.counts.length;
-  const top = Math.log1p(spread.counts.reduce((a, b) => Math.max(a, b), 1));
-  spread.counts.forEach((count, bin) => {
-    const tall = (Math.log1p(count) / top) * height;
-    picture.append(svg("rect", { x: bin * step, y: height - tall, width: Math.max(step - 0.5, 0.5), height: tall }));
-  });
-  const x = ((run.isovalue - spread.low) / (spread.high - spread.low)) * width;
-  if (isNumber(run.isovalue) && x >= 0 && x <= width) picture.append(svg("line", { x1: x, x2: x, y1: 0, y2: height }));
-  picture.append(svg("text", { x: 0, y: height + 13 }, precise(spread.low)));
-  picture.append(svg("text", { x: width, y: height + 13, "text-anchor": "end" }, precise(spread.high)));
-  place.append(picture);
-  if (isNumber(run.isovalue)) place.append(make("p", `isovalue ${precise(run.isovalue)}: ${run.chosen}`, "quiet"));
-}
-
-function listFacts(run) {
-  const list = at("#facts");
-  list.replaceChildren();
-  const add = (key, value) => {
-    const show = key === "isovalue" || key === "range" ? precise : plain;
-    if (value == null || value === "" || key.startsWith("histogram") || key === "mesh") return;
-    if (Array.isArray(value)) {
-      if (value.length) list.append(make("dt", key), make("dd", value.flat(3).map(show).join(", ")));
-    } else if (typeof value === "object") {
-      for (const [inner, part] of Object.entries(value)) add(`${key}.${inner}`, part);
-    } else {
-      list.append(make("dt", key), make("dd", isNumber(value) ? show(value) : String(value)));
-    }
-  };
-  for (const [key, value] of Object.entries(run)) add(key, value);
-}
-
-const viewer = { ready: false };
-
-function decode(text, type) {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new type(bytes.buffer);
-}
-
-function startViewer() {
-  const canvas = at("#view canvas");
-  viewer.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-  viewer.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-  viewer.scene = new THREE.Scene();
-  viewer.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
-  viewer.scene.add(new THREE.AmbientLight(0xffffff, 1.1));
-  viewer.lamp = new THREE.DirectionalLight(0xffffff, 2.2);
-  viewer.scene.add(viewer.lamp);
-  const material = new THREE.MeshStandardMaterial({ color: 0x6b9fd4, roughness: 0.65, side: THREE.DoubleSide });
-  viewer.mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
-  viewer.scene.add(viewer.mesh);
-  viewer.controls = new THREE.OrbitControls(viewer.camera, canvas);
-  viewer.controls.addEventListener("change", render);
-  new ResizeObserver(render).observe(at("#view"));
-  viewer.ready = true;
-}
-
-function render() {
-  const { clientWidth: width, clientHeight: height } = at("#view");
-  viewer.renderer.setSize(width, height, false);
-  viewer.camera.aspect = width / height;
-  viewer.camera.updateProjectionMatrix();
-  viewer.lamp.position.copy(viewer.camera.position);
-  viewer.renderer.render(viewer.scene, viewer.camera);
-}
-
-function show(run) {
-  const note = at("#view p");
-  at("#view").hidden = false;
-  if (!run.mesh) {
-    note.textContent = run.status === "failed" ? "no surface" : "no copy of this surface in the page";
-    if (viewer.ready) {
-      viewer.mesh.visible = false;
-      render();
-    }
-    return;
-  }
-  try {
-    if (!viewer.ready) startViewer();
-  } catch (error) {
-    note.textContent = "this browser cannot draw in 3-D";
-    return;
-  }
-  const { low, high } = run.mesh;
-  const steps = decode(run.mesh.vertices, Uint16Array);
-  const size = Math.max(...high.map((value, axis) => value - low[axis])) || 1;
-  const points = new Float32Array(steps.length);
-  for (let i = 0; i < steps.length; ++i) {
-    const axis = i % 3;
-    points[i] = ((steps[i] / 65535 - 0.5) * (high[axis] - low[axis])) / size;
-  }
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  geometry.setIndex(new THREE.BufferAttribute(decode(run.mesh.triangles, Uint16Array), 1));
-  geometry.computeVertexNormals();
-  viewer.mesh.geometry.dispose();
-  viewer.mesh.geometry = geometry;
-  viewer.mesh.visible = true;
-  viewer.camera.up.set(0, 0, 1);
-  viewer.camera.position.set(1.05, -1.55, 0.75);
-  viewer.controls.target.set(0, 0, 0);
-  viewer.controls.update();
-  const shown = steps.length && decode(run.mesh.triangles, Uint16Array).length / 3;
-  note.textContent = `${whole(shown)} of ${whole(dig(run, "surface.triangles"))} triangles shown; drag to turn`;
-  render();
-}
-
-function pick(run) {
-  for (const [other, row] of rows) row.setAttribute("aria-selected", other === run);
-  at("#name").textContent = `${fileName(run.source)} → ${fileName(run.output)}`;
-  at("#message").textContent = [run.message, ...run.missed.map((miss) => `misses ${miss}`), ...run.warnings].join(" · ");
-  at("#message").className = run.status === "failed" || run.missed.length ? "bad" : "warn";
-  show(run);
-  drawBars(run);
-  drawHistogram(run);
-  listFacts(run);
-}
-
-summarise();
-fillTable();
-if (runs.length) pick(runs.find((run) => run.mesh) ?? runs[0]);
-else at("#detail").hidden = true;

@@ -1,0 +1,193 @@
+"""Small copies of surfaces to look at: what a page shows instead of the meshes themselves.
+
+A copy is made where the surface is, from its arrays. Where that has too many triangles edges of it are contracted, so
+that no hole appears and no piece is lost; only where topology then allows no fewer are vertices of one cell made one.
+"""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from isocore.methods.simplifying import sketched
+from isocore.surface import Point, Surface
+
+Colour = tuple[int, int, int]
+
+#: Of one copy, however much room there is: so many are drawn at once by any browser.
+MOST_TRIANGLES = 120_000
+#: Of a copy in a page: half a vertex of 6 bytes and a normal of 3, and 6 bytes of indices, as base64.
+BYTES_PER_TRIANGLE = 15
+_FEWEST_TRIANGLES = 200
+_TRIES = 6
+#: Of the unit box: the cells of a grid so fine still have numbers of 64 bits.
+_FINEST = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Copy:
+    """A surface in 16-bit steps between two corners of its box, in the world.
+
+    vertices: little-endian uint16, x, y, z of each. triangles: three vertex numbers each, uint16, or uint32 where there
+    are 65536 vertices or more. normals: int8, x, y, z of each vertex, or None. count: of triangles.
+    """
+
+    low: Point
+    high: Point
+    vertices: bytes
+    triangles: bytes
+    normals: bytes | None
+    count: int
+    colour: Colour | None = None
+
+    @property
+    def size(self) -> int:
+        """Bytes in a page, about."""
+        return (len(self.vertices) + len(self.triangles) + len(self.normals or b"")) * 4 // 3
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain JSON types; arrays in base64."""
+        texts = {"vertices": self.vertices, "triangles": self.triangles, "normals": self.normals}
+        return {
+            "low": list(self.low),
+            "high": list(self.high),
+            "count": self.count,
+            "colour": None if self.colour is None else "#{:02x}{:02x}{:02x}".format(*self.colour),
+            **{name: None if data is None else base64.b64encode(data).decode() for name, data in texts.items()},
+        }
+
+
+def copy_from_dict(record: Any) -> Copy | None:
+    """The inverse of Copy.as_dict; None for what is none, as in a damaged file."""
+    try:
+        data = {key: base64.b64decode(record[key], validate=True) for key in ("vertices", "triangles")}
+        normals = None if record["normals"] is None else base64.b64decode(record["normals"], validate=True)
+        low, high = (tuple(map(float, record[key])) for key in ("low", "high"))
+        colour = None if record["colour"] is None else tuple(bytes.fromhex(record["colour"][1:]))
+        copy = Copy(low=low, high=high, normals=normals, count=int(record["count"]), colour=colour, **data)  # type: ignore[arg-type]
+    except (KeyError, TypeError, ValueError, OverflowError):
+        return None
+    return copy if _holds(copy) else None
+
+
+def _holds(copy: Copy) -> bool:
+    """Whether the arrays belong together."""
+    vertices = len(copy.vertices) // 6
+    width = 2 if vertices < 65536 else 4
+    if len(copy.vertices) != 6 * vertices or len(copy.triangles) != 3 * width * copy.count or not copy.count:
+        return False
+    if len(copy.low) != 3 or len(copy.high) != 3 or not np.isfinite((copy.low, copy.high)).all():
+        return False
+    if copy.normals is not None and len(copy.normals) != 3 * vertices:
+        return False
+    return int(np.frombuffer(copy.triangles, f"<u{width}").max()) < vertices
+
+
+def triangles_each(page_bytes: int, surfaces: int) -> int:
+    """How many triangles each of so many copies may have, for all of them to fit into a page; 0 for none at all."""
+    share = min(page_bytes // max(surfaces, 1) // BYTES_PER_TRIANGLE, MOST_TRIANGLES)
+    return max(share, _FEWEST_TRIANGLES) if page_bytes >= BYTES_PER_TRIANGLE else 0
+
+
+def copied(surface: Surface, most: int, colour: Colour | None = None) -> Copy | None:
+    """A copy with at most `most` triangles.
+
+    None where there is nothing to draw, where the box is longer than a double can say, or where memory is too short.
+    """
+    if not most or not len(surface.triangles):
+        return None
+    try:
+        vertices, triangles, normals = reduced(surface.vertices, surface.triangles, most, surface.normals)
+        return _packed(vertices, triangles, normals, surface.offset, colour)
+    except MemoryError:
+        return None
+
+
+def reduced(
+    vertices: npt.NDArray[Any],
+    triangles: npt.NDArray[np.int32],
+    most: int,
+    normals: npt.NDArray[np.float32] | None = None,
+) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], npt.NDArray[np.float32] | None]:
+    """At most `most` triangles, and the vertices they name, with their normals; (v, 3) each.
+
+    The mesh itself where it has no more, else one with the same pieces and handles wherever so many triangles can have
+    them. Elsewhere vertices in one cell of a grid are one.
+    """
+    if len(triangles) <= most:
+        return vertices, triangles, normals
+    places = _in_unit_box(vertices)
+    _, triangles, kept = sketched(places.astype(np.float32), triangles, most)
+    vertices, normals = vertices[kept], None if normals is None else normals[kept]
+    if len(triangles) <= most:
+        return vertices, triangles, normals
+    return (*_clustered(vertices, triangles, most), None)
+
+
+def _clustered(
+    vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], most: int
+) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32]]:
+    """The mesh with the vertices of each cell of a coarse grid at their mean."""
+    places = _in_unit_box(vertices)
+    corners = places[triangles]
+    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    cell = max(float(np.sqrt(2.5 * area / most)), _FINEST)
+    for _ in range(_TRIES):
+        number, kept = _by_cell(places, triangles, cell)
+        if len(kept) <= most:
+            shares = 1 / np.bincount(number)[number]
+            return np.stack([np.bincount(number, vertices[:, axis] * shares) for axis in range(3)], axis=1), kept
+        cell *= 1.1 * max(1.1, float(np.sqrt(len(kept) / most)))
+    return vertices[:0], triangles[:0]
+
+
+def _in_unit_box(vertices: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
+    """The vertices moved and scaled, all axes alike, to lie in 0 to 1: coordinates may be as large as a double."""
+    halves = vertices.astype(np.float64) / 2
+    offsets = halves - halves.min(axis=0)
+    return np.asarray(offsets / (offsets.max() or 1.0))
+
+
+def _by_cell(
+    vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32], cell: float
+) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.int32]]:
+    """The number of each vertex' cell, counted over those that hold any; the triangles between different cells."""
+    steps = np.floor(vertices / cell).astype(np.int64)
+    sides = steps.max(axis=0) + 1
+    keys = steps[:, 0] + sides[0] * (steps[:, 1] + sides[1] * steps[:, 2])
+    _, number = np.unique(keys, return_inverse=True)
+    merged = number[triangles]
+    alive = (merged[:, 0] != merged[:, 1]) & (merged[:, 1] != merged[:, 2]) & (merged[:, 2] != merged[:, 0])
+    return number, np.unique(merged[alive], axis=0).astype(np.int32)
+
+
+def _packed(
+    vertices: npt.NDArray[Any],
+    triangles: npt.NDArray[np.int32],
+    normals: npt.NDArray[np.float32] | None,
+    offset: Point | None,
+    colour: Colour | None,
+) -> Copy | None:
+    if not len(triangles):
+        return None
+    low, high = vertices.min(axis=0).astype(float), vertices.max(axis=0).astype(float)
+    with np.errstate(over="ignore"):
+        sides = high - low
+    if not np.isfinite(sides).all():
+        return None
+    steps = np.rint((vertices - low) / np.where(sides > 0, sides, 1) * 65535).astype("<u2")
+    away = np.zeros(3) if offset is None else np.array(offset)
+    low, high = low + away, high + away
+    return Copy(
+        low=(float(low[0]), float(low[1]), float(low[2])),
+        high=(float(high[0]), float(high[1]), float(high[2])),
+        vertices=steps.tobytes(),
+        triangles=triangles.astype("<u2" if len(vertices) < 65536 else "<u4").tobytes(),
+        normals=None if normals is None else np.rint(normals * 127).astype(np.int8).tobytes(),
+        count=len(triangles),
+        colour=colour,
+    )
