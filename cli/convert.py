@@ -18,6 +18,7 @@ from .console import say
 from .convert_fields import check_colours
 from .convert_labels import label_request
 from .convert_options import ConvertOptions, convert_options
+from .convert_pictures import check_picture
 from .groups import GroupedCommand
 from .lists import listed
 from .options import default_threads
@@ -84,7 +85,10 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     pattern = _pattern(options, format_, requirements)
     check_template(options.name or "")
     _check_places(options)
-    naming = Naming(output=options.output, output_dir=options.output_dir, template=options.name)
+    check_picture(click.get_current_context(), options.picture)
+    naming = Naming(
+        output=options.output, output_dir=options.output_dir, template=options.name, picture=options.picture
+    )
     choices = _choices_of(options)
     written = [("--report", path) for path in options.reports]
     if any(path.suffix.lower() == ".html" for path in options.reports):
@@ -164,6 +168,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
     """The job that all jobs are like, but for their source and targets."""
     from isocore.backends import check_options
     from isocore.job import Job, Options
+    from isocore.views import Still
 
     options = Options(
         cap=asked.cap,
@@ -199,6 +204,7 @@ def _pattern(asked: ConvertOptions, format_: Format, requirements: tuple[str, ..
         force=asked.force,
         ambiguities=asked.ambiguities,
         colour=asked.colour,
+        still=Still(views=asked.view, size=asked.picture_size),
         compress=asked.compress,
         colormap=asked.colormap,
         color_by=asked.color_by,

@@ -13,10 +13,12 @@ import click
 from isocore.choices import About, Choice, Format, MaxError
 from isocore.labels import Labels
 from isocore.piece_sizes import MinPiece
+from isocore.views import Views
 
 from .convert_fields import FIELDS
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
 from .convert_method import METHOD
+from .convert_pictures import PICTURES
 from .convert_pieces import PIECES
 from .options import Reading, default_threads, with_all
 from .values import Range
@@ -64,6 +66,9 @@ class ConvertOptions:
     colormap: str | None
     color_by: str | None
     color_range: tuple[float, float] | None
+    picture: str | None
+    view: Views
+    picture_size: tuple[int, int]
     ambiguities: Path | None
     jobs: int | Literal["auto"]
     threads: int | None
@@ -99,4 +104,5 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
     def with_record(context: click.Context, /, **values: Any) -> None:
         command(context, ConvertOptions(**values))
 
-    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *OUTPUT, *FIELDS, *BATCH, *REPORT))
+    output = (*OUTPUT, *FIELDS, *PICTURES)
+    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *output, *BATCH, *REPORT))

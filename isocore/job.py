@@ -20,6 +20,7 @@ from isocore.errors import OptionError
 from isocore.labels import Label
 from isocore.piece_sizes import MinPiece, parse_min_piece
 from isocore.readers.options import ReadOptions
+from isocore.views import Still
 from isocore.volume import Space, Volume, to_ras
 
 #: The target that is not a file.
@@ -68,10 +69,14 @@ class Options:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One surface of a job: how its isovalue is chosen (a text is parsed) and where it goes; `-` is stdout."""
+    """One surface of a job: how its isovalue is chosen (a text is parsed) and where it goes; `-` is stdout.
+
+    picture: where a still of it goes, if one is asked for.
+    """
 
     choice: Choice
     output: Path
+    picture: Path | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.choice, str):
@@ -94,6 +99,7 @@ class Job:
     colormap, color_by, color_range: how the vertices are coloured by a field that `read_options.carry` carries; None:
         viridis, the first of them, from its smallest to its largest value on the surface.
     ambiguities: where the ambiguous faces go, for a job of one target.
+    still: how the pictures of targets are drawn.
     compress: pack the arrays of a format that can be packed, which is VTP.
     if_changed: leave outputs alone that are up to date (batches/stamps.py); force: not even those. A batch obeys
         both, also on a cluster; `convert` alone always converts.
@@ -124,6 +130,7 @@ class Job:
     if_changed: bool = False
     force: bool = False
     page_triangles: int = 0
+    still: Still = field(default_factory=Still)
     refusal: str = ""
 
     def __post_init__(self) -> None:

@@ -16,8 +16,10 @@ from isocore.errors import OptionError, writing
 from isocore.extraction import Field
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
+from isocore.pictures import check_installed, draw, write_png
 from isocore.report.sections import Carried, Colors, Written
 from isocore.surface import Part, Point, Surface, joined
+from isocore.views import directions
 from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import WRITERS
@@ -90,7 +92,7 @@ class Sink:
         """Write a rounded surface, and how its vertices are coloured; None where it waits for the others."""
         surface = self._dressed(surface, target, isovalue)
         if not self._job.together:
-            return write_target(_with_colours(surface, self._job), target, self._job), colors_of(surface, self._job)
+            return self._written(surface, target), colors_of(surface, self._job)
         self._parts.append(surface)
         return None, None
 
@@ -101,7 +103,14 @@ class Sink:
         whole = joined(self._parts)
         self._parts.clear()
         colors = colors_of(whole, self._job)
-        return write_target(_with_colours(whole, self._job), self._job.targets[0], self._job), colors
+        return self._written(whole, self._job.targets[0]), colors
+
+    def _written(self, surface: Surface, target: Target) -> Written:
+        """Write the surface, and draw it where a picture is asked for."""
+        written = write_target(_with_colours(surface, self._job), target, self._job)
+        if target.picture is not None:
+            draw_picture(surface, target.picture, self._job)
+        return written
 
     def _dressed(self, surface: Surface, target: Target, isovalue: float) -> Surface:
         """The surface with what is known of it: labels, what is given a colour, and isovalues that share a file."""
@@ -145,6 +154,24 @@ def write_target(surface: Surface, target: Target, job: Job) -> Written:
         if to_stdout:
             sys.stdout.buffer.flush()
     return stream.written()
+
+
+def check_pictures(job: Job, space: str) -> None:
+    """Raises OptionError or FieldError where a picture is asked for and cannot be drawn; before anything is written."""
+    if any(target.picture is not None for target in job.targets):
+        check_installed()
+        directions(job.still.views, space)
+
+
+def draw_picture(surface: Surface, picture: Path, job: Job) -> None:
+    """Draw a still of the surface, in the colours of what it carries."""
+    colors = colors_of(surface, job)
+    if colors is not None and len(surface.vertices):
+        numbers = magnitudes(surface.fields[colors.by])
+        surface = replace(surface, colours=coloured(numbers, colors.colormap, colors.range))
+    pixels = draw(surface, directions(job.still.views, surface.space), job.still.size)
+    with whole_file(picture) as stream:
+        write_png(stream, pixels)
 
 
 def materials_of(output: Path, job: Job) -> Path | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from isocore.asked import asked_of
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
 from isocore.copies import copied
 from isocore.errors import FieldError, InputError, IsocoreError, about
@@ -18,12 +19,20 @@ from isocore.memory import forget_peak, peak_bytes
 from isocore.methods.index_file import index_path
 from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
-from isocore.outputs import Sink, carried_facts, check_colours, colour_of, format_warnings, write_ambiguities
+from isocore.outputs import (
+    Sink,
+    carried_facts,
+    check_colours,
+    check_pictures,
+    colour_of,
+    format_warnings,
+    write_ambiguities,
+)
 from isocore.pieces import check_unit, keep_pieces
 from isocore.readers import files_of, read
 from isocore.remarks import border, emptiness
 from isocore.report.record import RunReport
-from isocore.report.sections import Asked, Given, Ratio, Reference, Seconds
+from isocore.report.sections import Ratio, Reference, Seconds
 from isocore.requirements import missed
 from isocore.rounded_error import remeasured
 from isocore.segmentation import isovalue_warnings, label_count
@@ -66,6 +75,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
             check_colours(source, job)
         check_unit(job.options, source.unit)
         known = FieldFacts.of(source, spread)
+        check_pictures(job, known.space)
         labels = label_count(source, spread)
         outlook = _outlook(job)
         backend, why = backend_for(job, type(source), outlook)
@@ -97,7 +107,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                 yield failed(job, target, error, seconds=timer.taken())
             else:
                 run = RunReport(
-                    asked=_asked(job, target),
+                    asked=asked_of(job, target),
                     status="done" if measured.triangles else "empty",
                     message="" if measured.triangles else kept.message or emptiness(chosen, spread, findings.label),
                     warnings=source.warnings
@@ -136,7 +146,7 @@ def failed(job: Job, target: Target, error: BaseException, *, seconds: Seconds |
     """The record of a target that came to nothing; its message starts with a path."""
     text = "does not fit into memory; free some or crop the data" if isinstance(error, MemoryError) else str(error)
     return RunReport(
-        asked=_asked(job, target),
+        asked=asked_of(job, target),
         status="failed",
         message=about(job.source, text, target.output),
         backend=job.backend,
@@ -148,40 +158,6 @@ def failed(job: Job, target: Target, error: BaseException, *, seconds: Seconds |
 def requirements_checked(run: RunReport, job: Job) -> RunReport:
     """The run with what the job requires and its surface misses."""
     return run if run.surface is None else replace(run, missed=missed(run.surface, job.require, job.max_triangles))
-
-
-def _asked(job: Job, target: Target) -> Asked:
-    options = job.options
-    return Asked(
-        source=str(job.source),
-        output=str(target.output),
-        asked=str(target.choice),
-        volume=job.read_options.volume,
-        step=job.read_options.step,
-        time=job.time,
-        options=Given(
-            threads=options.threads,
-            cap=options.cap,
-            normals=job.normals,
-            block_size=options.block_size,
-            max_error=None if options.max_error is None else str(options.max_error),
-            simplify=options.simplify,
-            triangles=options.triangles,
-            topology=options.topology,
-            smooth=options.smooth,
-            background=options.background,
-            keep_largest=options.keep_largest,
-            min_piece=None if options.min_piece is None else str(options.min_piece),
-            fill_bubbles=options.fill_bubbles or None,
-            format=job.format,
-            space=job.space,
-            offset=None if job.offset is None else str(job.offset),
-            ignore=job.read_options.ignore or None,
-            carry=job.read_options.carry or None,
-            compress=job.compress or None,
-            merge_isovalues=(job.together and not any(isinstance(one.choice, Label) for one in job.targets)) or None,
-        ),
-    )
 
 
 def _read(job: Job) -> Field:

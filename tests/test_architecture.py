@@ -16,14 +16,14 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "digits", "choices", "colormaps", "labels", "piece_sizes"} | {
+NOUNS = {"errors", "version", "digits", "choices", "colormaps", "labels", "piece_sizes", "views"} | {
     "volume", "cell_mesh", "carried", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
 FIELD_ROOMS = {"apart", "histogram", "isovalue", "extrema", "field_facts", "remarks", "segmentation"}
 #: What the one path is made of.
 STAGES = {"copies", "readers", "backends", "writers", "report", "ambiguities", "requirements", "timer", "memory"} | {
-    "whole_file"
+    "asked", "pictures", "whole_file"
 }  # fmt: skip
 #: What becomes of coordinates on their way to the file.
 PLACES = {"offset", "outputs", "pieces", "rounded_error"}
@@ -38,6 +38,8 @@ MAY_IMPORT: dict[str, set[str]] = {
     "version": set(),
     "digits": set(),
     "colormaps": {"errors"},
+    "views": {"errors"},
+    "pictures": {"errors", "surface", "views"},
     "choices": {"digits", "errors", "labels"},
     "labels": {"errors"},
     "piece_sizes": {"choices", "errors"},
@@ -50,7 +52,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "surface": {"exchange", "volume"} | KERNELS,
     "measurements": {"surface"} | KERNELS,
     "requirements": {"measurements"},
-    "job": {"choices", "errors", "labels", "piece_sizes", "readers/options", "volume"},
+    "job": {"choices", "errors", "labels", "piece_sizes", "readers/options", "views", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
     "copies": {"surface", "methods/simplifying"},
@@ -68,12 +70,13 @@ MAY_IMPORT: dict[str, set[str]] = {
     | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},
+    "asked": NOUNS | {"report/sections"},
     "methods": NOUNS | KERNELS | {"whole_file"},
     "backends": NOUNS | {"methods"},
     "benches": NOUNS | KERNELS | {"histogram", "methods"},
     "remarks": NOUNS | {"field_facts", "histogram", "isovalue", "measurements"},
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
-    "outputs": NOUNS | {"ambiguities", "report/sections", "whole_file", "writers"},
+    "outputs": NOUNS | {"ambiguities", "pictures", "report/sections", "whole_file", "writers"},
     "pieces": NOUNS | KERNELS,
     "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
@@ -118,6 +121,7 @@ ONLY_IN = {
     "pyvista": {"isocore/exchange.py", "isocore/surface.py"},
     "trimesh": {"isocore/exchange.py", "isocore/surface.py"},
     "isal": {"isocore/readers"},
+    "embreex": {"isocore/pictures.py"},
     "distributed": {"isocore/batches/cluster.py"},
 }
 

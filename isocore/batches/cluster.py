@@ -50,7 +50,10 @@ def convert_whole(job: Job) -> list[RunReport]:
 
 def _anywhere(job: Job) -> Job:
     """The job with paths that hold in any folder."""
-    targets = tuple(replace(target, output=target.output.absolute()) for target in job.targets)
+    targets = tuple(
+        replace(target, output=target.output.absolute(), picture=target.picture and target.picture.absolute())
+        for target in job.targets
+    )
     ambiguities = None if job.ambiguities is None else job.ambiguities.absolute()
     return replace(job, source=job.source.absolute(), targets=targets, ambiguities=ambiguities)
 

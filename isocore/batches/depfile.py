@@ -31,6 +31,7 @@ def depfile_text(jobs: Sequence[Job]) -> tuple[str, list[Path]]:
             continue
         files = (*files_of(job.source, job.read_options.step), *carried_files(job.read_options))
         outputs = dict.fromkeys(target.output for target in job.targets if target.output != STDOUT)
+        outputs |= dict.fromkeys(target.picture for target in job.targets if target.picture is not None)
         left_out |= dict.fromkeys(path for path in (*files, *outputs) if _UNSPEAKABLE.search(str(path)))
         made, needed = ([_quoted(path) for path in paths if path not in left_out] for paths in (outputs, files))
         if made:

@@ -21,6 +21,7 @@ def plan_lines(jobs: Sequence[Job]) -> Iterator[str]:
             reason = stamps.reason_to_run(job, target, source_hash)[0] if job.if_changed else "asked for"
             what = f"run ({reason})" if reason else "skip (up to date)"
             memory = f", about {estimate(job) / 2**20:,.0f} MiB" if reason else ""
-            yield f"{job.source} -> {target.output}: isovalue {target.choice}, {what}{memory}"
+            drawn = "" if target.picture is None else f" and {target.picture}"
+            yield f"{job.source} -> {target.output}{drawn}: isovalue {target.choice}, {what}{memory}"
     for collection in collections_of(jobs):
         yield f"{collection.jobs[0].source} -> {collection.path}: lists {collection.left:,} surfaces with their times"

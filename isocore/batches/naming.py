@@ -24,11 +24,15 @@ _DIGITS = re.compile(r"0?\d{1,2}d?|")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Naming:
-    """Where surfaces go. output: one file, or `-`; else output_dir and template, with the format as suffix."""
+    """Where surfaces go. output: one file, or `-`; else output_dir and template, with the format as suffix.
+
+    picture: where a still of each goes, as a template with its suffix, or None.
+    """
 
     output: Path | None = None
     output_dir: Path | None = None
     template: str | None = None
+    picture: str | None = None
 
 
 class _NoVolume(str):
@@ -38,20 +42,20 @@ class _NoVolume(str):
         return ""
 
 
-def check_template(template: str) -> None:
-    """Refuse a name template with unknown fields, or with a format that its field does not take."""
+def check_template(template: str, option: str = "--name") -> None:
+    """Refuse a template of `option` with unknown fields, or with a format that its field does not take."""
     try:
         used = [part[1:] for part in string.Formatter().parse(template) if part[1] is not None]
     except ValueError as error:
-        raise OptionError(f"--name {template}: {error}; fields look like {{stem}}") from error
+        raise OptionError(f"{option} {template}: {error}; fields look like {{stem}}") from error
     for name, spec, conversion in used:
         if name not in NAME_FIELDS:
             known = " ".join(f"{{{field}}}" for field in NAME_FIELDS)
-            raise OptionError(f"--name {template}: {{{name}}} is no field; known are {known}")
+            raise OptionError(f"{option} {template}: {{{name}}} is no field; known are {known}")
         if conversion is not None or (spec and not (name in _NUMBERED and _DIGITS.fullmatch(spec))):
             given = f"{{{name}{f'!{conversion}' if conversion is not None else ''}{f':{spec}' if spec else ''}}}"
             advice = f"write {{{name}}}" + (f", or {{{name}:03}} for three digits" if name in _NUMBERED else "")
-            raise OptionError(f"--name {template}: {given} asks for a format that names do not take; {advice}")
+            raise OptionError(f"{option} {template}: {given} asks for a format that names do not take; {advice}")
 
 
 def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, several: bool) -> Path:
@@ -62,6 +66,11 @@ def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, seve
     steps = pattern.read_options.step is not None
     template = naming.template or default_template(several=several, volumes=volumes, labels=labels, steps=steps)
     return folder_of(item, naming, template) / f"{_filled(template, item, choice, pattern)}.{pattern.format}"
+
+
+def picture_of(item: Input, choice: Choice, pattern: Job, naming: Naming) -> Path | None:
+    """Where the still of one surface goes."""
+    return None if naming.picture is None else Path(_filled(naming.picture, item, choice, pattern))
 
 
 def default_template(*, several: bool, volumes: bool, labels: bool = False, steps: bool = False) -> str:

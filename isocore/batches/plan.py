@@ -12,7 +12,15 @@ from pathlib import Path
 
 from isocore.batches.inputs import Input, find_inputs
 from isocore.batches.label_targets import LabelRequest, label_choices
-from isocore.batches.naming import Naming, check_template, default_template, folder_of, other_templates, output_of
+from isocore.batches.naming import (
+    Naming,
+    check_template,
+    default_template,
+    folder_of,
+    other_templates,
+    output_of,
+    picture_of,
+)
 from isocore.batches.places import Places
 from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
@@ -137,8 +145,10 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
     except Exception as error:
         return _job(replace(item, refusal=told(item.path, error)), asked, pattern, naming)
     several = len(choices) > 1 and not pattern.together
+    pictures = [picture_of(item, choices[0] if pattern.together else choice, pattern, naming) for choice in choices]
+    drawn = zip(choices, pictures, strict=True)
     targets = tuple(
-        Target(choice, output_of(item, choice, pattern, naming, several=several)) for choice in choices
+        Target(choice, output_of(item, choice, pattern, naming, several=several), picture) for choice, picture in drawn
     )
     return replace(pattern, source=item.path, targets=targets)
 
@@ -164,10 +174,24 @@ def refuse_overwriting(jobs: Iterable[Job], *, written: Sequence[Named] = (), re
                 both = f"{job.source} twice" if other == str(job.source) else f"{other} and {job.source}"
                 raise _Clash(f"{target.output}: would be written by {both}")
             raise OptionError(f"{target.output}: {taken}; choose another -o or -d")
+    _refuse_pictures(jobs, places)
     for option, path in written:
         taken = places.take(path, f"is also written by {option}")
         if taken is not None:
             raise OptionError(f"{option} {path}: {taken} and would be overwritten; choose another name")
+
+
+def _refuse_pictures(jobs: Iterable[Job], places: Places) -> None:
+    """Refuse pictures that would overwrite anything, or each other."""
+    for job in jobs:
+        for target in job.targets[:1] if job.together else job.targets:
+            if target.picture is None:
+                continue
+            taken = places.take(target.picture, "is the picture of another surface, too")
+            if taken is not None:
+                fields = "use a template, as --picture '{stem}_{isovalue}.png'"
+                how = fields if taken.startswith("is the picture") else "choose another name"
+                raise OptionError(f"--picture {target.picture}: {taken}; {how}")
 
 
 def _is_free(jobs: Iterable[Job], written: Sequence[Named], read: Sequence[Named]) -> bool:

@@ -38,7 +38,8 @@ def run_jobs(
     """Convert all jobs; records come as they are done. `at` is told what is being worked on."""
     batch = batch or Batch()
     outputs = [target.output for job in jobs for target in job.targets if target.output != STDOUT]
-    remove_parts([*outputs, *map(stamps.stamp_path, outputs)])
+    pictures = [target.picture for job in jobs for target in job.targets if target.picture is not None]
+    remove_parts([*outputs, *pictures, *map(stamps.stamp_path, outputs)])
     runs, lists = _runs(jobs, batch, at), Collections(jobs)
     try:
         with closing(runs):

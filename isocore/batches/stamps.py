@@ -26,7 +26,7 @@ from isocore.whole_file import whole_file
 #: What of a job does not change what is written: where it comes from and goes, how it is judged, whether it is done.
 #: The last three change what else is made, and are asked about one by one; whatever else a job may be asked for counts.
 UNHASHED = frozenset(
-    ("source", "targets", "require", "max_triangles", "if_changed", "force", "page_triangles", "refusal")
+    ("source", "targets", "require", "max_triangles", "if_changed", "force", "page_triangles", "refusal", "still")
 ) | {"ambiguities", "reference", "self_intersections"}
 #: Bytes of a file's name beyond which file systems refuse it.
 _LONGEST_NAME = 255
@@ -37,6 +37,7 @@ class _Stamp:
     """A stamp by its keys. input, options, record: hashes, the last one of `run`.
 
     ambiguities: the hash of the file that was asked for beside the output, else "". reference: was one asked for?
+    picture: the hash of the still, or ""; still: how it was drawn.
     """
 
     version: str
@@ -46,6 +47,8 @@ class _Stamp:
     record: str
     ambiguities: str
     reference: bool
+    picture: str = ""
+    still: str = ""
 
 
 def stamp_path(output: Path, part: str = "") -> Path:
@@ -121,6 +124,10 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
             return "no reference yet", None
         if job.ambiguities is not None and not _is_as_made(job.ambiguities, stamp.ambiguities):
             return "no ambiguities yet, or changed", None
+        if target.picture is not None and not (
+            stamp.still == str(job.still) and _is_as_made(target.picture, stamp.picture)
+        ):
+            return "no picture yet, or changed", None
         run = run_from_dict(stamp.run, complete=True)
         if job.counts_intersections and run.surface is not None and run.surface.self_intersections is None:
             return "self-intersections not counted yet", None
@@ -151,7 +158,7 @@ def _hash_of(run: dict[str, Any]) -> str:
 def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> None:
     """Write down what the output was made from."""
     record = run_as_dict(run)
-    beside = job.ambiguities
+    beside, drawn = job.ambiguities, target.picture
     stamp = _Stamp(
         version=__version__,
         input=source_hash,
@@ -160,6 +167,8 @@ def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> No
         record=_hash_of(record),
         ambiguities=_file_hash(beside) if beside is not None and beside.is_file() else "",
         reference=job.reference,
+        picture=_file_hash(drawn) if drawn is not None and drawn.is_file() else "",
+        still=str(job.still),
     )
     with whole_file(_stamp_path(job, target)) as stream:
         stream.write(json.dumps(asdict(stamp), allow_nan=False).encode())
