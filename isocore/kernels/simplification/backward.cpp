@@ -11,8 +11,9 @@ constexpr float kSmall = 4;             // cells: a longer triangle is halved be
 constexpr float kPiece = 0.65f;         // cells: the longest side of a piece
 constexpr int kHalvings = 5;            // of a piece
 constexpr int kMostHalvings = 64;       // of all pieces of a triangle
-constexpr int kDepth = 4;               // halvings of a triangle
 constexpr float kLeastMargin = 0.01f;   // cells
+constexpr float kBoxMargin = 1e-3f;     // cells: more than rounding does to a box
+constexpr float kLeastHeight = 1e-3f;   // of its sides, that a triangle must have for a frame of its own
 constexpr std::size_t kMostSteps = 16;  // pieces along a side
 
 Spot between(const Spot& a, const Spot& b) {
@@ -38,26 +39,23 @@ std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, co
 }  // namespace
 
 template <class Real>
-bool Backward<Real>::are_near(const Star& star, float limit) {
+bool Backward<Real>::are_near(const Star& star, const Facets& facets, float limit) {
     limit_ = limit;
     if (!proves_all_ && limit > kFarthest) {
         distances_.assign(star.face_count(), std::numeric_limits<float>::infinity());
         return true;
     }
-    faces_.clear();
-    Box box = Box::around({star.place(0), star.place(1), star.place(2)}, limit + 1e-3f);
-    for (std::size_t n = 1; n + 1 < star.count; ++n) {
-        faces_.push_back({star.place(0), star.place(n), star.place(n + 1)});
-        box.add(Box::around(faces_.back(), limit + 1e-3f));
-    }
+    const float margin = limit + kBoxMargin;
+    const auto face = [&](std::size_t n) { return Corners{star.place(0), star.place(n), star.place(n + 1)}; };
+    Box box = Box::around(face(1), margin);
+    for (std::size_t n = 2; n + 1 < star.count; ++n) box.add(Box::around(face(n), margin));
     near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box, star.sheet);
     distances_.clear();
-    return std::all_of(faces_.begin(), faces_.end(), [&](const Corners& face) {
-        distance_ = 0;
-        const bool is_proved = is_near(face, near_star_, 0);
+    for (std::size_t n = 1; n + 1 < star.count; ++n) {
+        if (!is_near(face(n), facets.frame(n - 1))) return false;
         distances_.push_back(distance_);
-        return is_proved;
-    });
+    }
+    return true;
 }
 
 template <class Real>
@@ -66,38 +64,58 @@ float Backward<Real>::distance(std::int32_t triangle, float limit) {
     const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
     const auto place = [&](std::size_t n) { return mesh_.places[static_cast<std::size_t>(corners[n])].at; };
     const Corners face{Spot{0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0))};
-    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + 1e-3f), mesh_.sheet_of(triangle));
-    distance_ = 0;
-    return is_near(face, near_star_, 0) ? distance_ : std::numeric_limits<float>::infinity();
+    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + kBoxMargin), mesh_.sheet_of(triangle));
+    frame_.clear();
+    frame_.add(face[0], face[1], face[2]);
+    frame_.find_frames();
+    return is_near(face, frame_.frame(0)) ? distance_ : std::numeric_limits<float>::infinity();
 }
 
-// around: triangles of the reference, all that are near and perhaps others.
+// frame: the triangle's. That of a sliver is full of rounding, and is not used.
 template <class Real>
-bool Backward<Real>::is_near(const Corners& triangle, const Patch& around, int depth) {
-    Patch& near = near_[static_cast<std::size_t>(depth)];
-    near.select(around, Box::around(triangle, limit_ + 1e-3f));
+bool Backward<Real>::is_near(const Corners& triangle, const Facets::Frame& frame) {
+    distance_ = 0;
+    const float margin = limit_ + kBoxMargin;
+    const Box box = Box::around(triangle, margin);
+    is_plumbed_ = frame.top_v > kLeastHeight * (frame.length + std::abs(frame.top_u));
+    if (!is_plumbed_) {
+        near_[0].select(near_star_, box);
+        return is_near(triangle, 0);
+    }
+    near_[0].select(near_star_, box, frame, margin);
+    return is_near({Spot{0, 0, 0}, Spot{frame.length, 0, 0}, Spot{frame.top_u, frame.top_v, 0}}, 0);
+}
+
+// near_[depth]: triangles of the reference, all that are near and perhaps others.
+template <class Real>
+bool Backward<Real>::is_near(const Corners& triangle, std::size_t depth) {
+    Patch& near = near_[depth];
     if (near.size() == 0) return false;
-    frame_.clear();
-    frame_.add(triangle[0], triangle[1], triangle[2]);
-    frame_.find_frames();
-    if (column_.is_covered(frame_.frame(0), near, limit_)) {
+    if (is_plumbed_ && column_.is_covered(triangle, near, limit_)) {
         distance_ = std::max(distance_, column_.distance());
         return true;
     }
-    if (longest_side(triangle) <= kSmall || depth + 1 == kDepth) {
-        // Some of the triangles may be enough: the nearest, where there are too many.
-        for (float margin = limit_; near.size() > kMostTriangles && margin > kLeastMargin; margin *= 0.7f)
-            near.select(around, Box::around(triangle, margin));
-        if (near.size() > kMostTriangles) return false;
-        facets_.clear();
-        for (std::size_t n = 0; n < near.size(); ++n)
-            facets_.add(near.corner(n, 0), near.corner(n, 1), near.corner(n, 2));
-        facets_.find_frames();
+    if (longest_side(triangle) <= kSmall || depth + 1 == near_.size()) {
+        take_facets(triangle, near);
         distance_ = limit_;
-        return is_near_by_pieces(triangle);
+        return facets_.size() > 0 && is_near_by_pieces(triangle);
     }
     const auto parts = quarters(triangle, between);
-    return std::all_of(parts.begin(), parts.end(), [&](const Corners& part) { return is_near(part, near, depth + 1); });
+    return std::all_of(parts.begin(), parts.end(), [&](const Corners& part) {
+        near_[depth + 1].select(near, Box::around(part, limit_ + kBoxMargin));
+        return is_near(part, depth + 1);
+    });
+}
+
+// Some of the triangles may be enough: the nearest, where there are too many.
+template <class Real>
+void Backward<Real>::take_facets(const Corners& triangle, Patch& near) {
+    for (float margin = limit_; near.size() > kMostTriangles && margin > kLeastMargin; margin *= 0.7f)
+        near.select(near, Box::around(triangle, margin));
+    facets_.clear();
+    if (near.size() > kMostTriangles) return;
+    for (std::size_t n = 0; n < near.size(); ++n) facets_.add(near.corner(n, 0), near.corner(n, 1), near.corner(n, 2));
+    facets_.find_frames();
 }
 
 // Distance to a convex set is a convex function: a piece whose three corners lie within the limit of one triangle of

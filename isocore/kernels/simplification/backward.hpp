@@ -25,8 +25,8 @@ class Backward {
     void prove_all(bool all) { proves_all_ = all; }
     static constexpr float kFarthest = 4;  // cells
 
-    // Is it proved that all points of the star's faces lie within the limit of the reference?
-    bool are_near(const Star& star, float limit);
+    // Is it proved that all points of the star's faces lie within the limit of the reference? facets: star.draw()'s.
+    bool are_near(const Star& star, const Facets& facets, float limit);
     // Of each face of that star: how far its points lie from the reference, at most.
     float distance(std::size_t face) const { return distances_[face - 1]; }
     // The same of one triangle of the mesh: at most so far, or infinity where it is not proved to lie within the limit.
@@ -38,7 +38,9 @@ class Backward {
     static constexpr std::size_t kMostTriangles = Facets::kRoom;
     using Within = std::array<std::uint64_t, kMostTriangles / 64>;
 
-    bool is_near(const Corners& triangle, const Patch& around, int depth);
+    bool is_near(const Corners& triangle, const Facets::Frame& frame);
+    bool is_near(const Corners& triangle, std::size_t depth);
+    void take_facets(const Corners& triangle, Patch& near);
     bool is_near_by_pieces(const Corners& triangle);
     bool is_near_by_halves(const Corners& triangle, const std::array<Within, 3>& within, int depth);
     Within within(const Spot& point) const;
@@ -50,10 +52,10 @@ class Backward {
     float limit_ = 0;
     Patch near_star_;
     std::array<Patch, 4> near_;  // by depth
-    std::vector<Corners> faces_;
     std::vector<float> distances_;
     float distance_ = 0;  // so far, of the triangle that is looked at
     Column column_;
+    bool is_plumbed_ = true;  // are places seen from the triangle that is looked at?
     Facets frame_, facets_;
     std::vector<Within> lattice_;
     int halvings_ = 0;  // that may still be done

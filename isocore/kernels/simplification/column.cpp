@@ -14,8 +14,8 @@ constexpr float kFar = 1e9f;    // what lanes past the end hold
 
 }  // namespace
 
-bool Column::is_covered(const Facets::Frame& frame, const Patch& patch, float limit) {
-    frame_ = frame;
+bool Column::is_covered(const std::array<Spot, 3>& triangle, const Patch& patch, float limit) {
+    build_walls(triangle);
     limit_ = limit;
     count_ = 0;
     distance_ = 0;
@@ -30,30 +30,34 @@ bool Column::is_covered(const Facets::Frame& frame, const Patch& patch, float li
     return is_odd_at(0.37f, 0.29f) || is_odd_at(0.31f, 0.36f);
 }
 
+void Column::build_walls(const std::array<Spot, 3>& triangle) {
+    extent_ = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+        const Spot &from = triangle[n], &to = triangle[n == 2 ? 0 : n + 1];
+        const float along = to[0] - from[0], across = to[1] - from[1];
+        walls_[n] = {from[0], from[1], along, across, kBlur * std::sqrt(along * along + across * across)};
+        extent_ = std::max({extent_, std::abs(from[0]), std::abs(from[1])});
+    }
+}
+
 // Looks at eight triangles, and keeps those of which a part lies within the limit. False if one forbids a conclusion.
 bool Column::add_parts(const Patch& patch, std::size_t first) {
-    const auto lanes = [](const Spot& spot) { return Vector<Floats>{spot[0], spot[1], spot[2]}; };
-    const auto origin = lanes(frame_.origin), axis_u = lanes(frame_.u), axis_v = lanes(frame_.v),
-               axis_h = lanes(frame_.h);
-    const Floats length(frame_.length), top_u(frame_.top_u), top_v(frame_.top_v), base(frame_.top_u - frame_.length);
-    const float right_side =
-        std::sqrt((frame_.top_u - frame_.length) * (frame_.top_u - frame_.length) + frame_.top_v * frame_.top_v);
-    const float left_side = std::sqrt(frame_.top_u * frame_.top_u + frame_.top_v * frame_.top_v);
-    const Floats by_bottom(-kBlur), by_right(kBlur * right_side), by_left(kBlur * left_side);
     Vector<Floats> u, v, h;
-    auto below = Floats(0.0f) <= Floats(0.0f), right = below, left = below;
     for (std::size_t n = 0; n < 3; ++n) {
-        const auto at = minus(patch.in_lanes(n, first), origin);
-        u[n] = dot(at, axis_u);
-        v[n] = dot(at, axis_v);
-        h[n] = dot(at, axis_h);
-        below = below & (v[n] < by_bottom);
-        right = right & (by_right < (u[n] - length) * top_v - v[n] * base);
-        left = left & (by_left < v[n] * top_u - u[n] * top_v);
+        const auto at = patch.in_lanes(n, first);
+        u[n] = at[0];
+        v[n] = at[1];
+        h[n] = at[2];
+    }
+    auto outside = Floats(0.0f) < Floats(0.0f);
+    for (const Wall& wall : walls_) {
+        const Floats deepest =
+            greatest(wall.depth(u[0], v[0]), greatest(wall.depth(u[1], v[1]), wall.depth(u[2], v[2])));
+        outside = outside | (deepest < Floats(-wall.blur));
     }
     const Floats lowest = least(h[0], least(h[1], h[2])), highest = greatest(h[0], greatest(h[1], h[2]));
     const Floats beyond(limit_ + kBlur), limit(limit_), zero(0.0f);
-    const auto beside = below | right | left | (beyond < lowest) | (highest < zero - beyond);
+    const auto beside = outside | (beyond < lowest) | (highest < zero - beyond);
     const unsigned valid = patch.size() - first < kLanes ? (1u << (patch.size() - first)) - 1 : 255u;
     const unsigned over = ~beside.bits() & valid;
     const unsigned whole = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
@@ -96,8 +100,6 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
 // Which of eight triangles have a side that the column's triangle lies beyond.
 unsigned Column::apart(const Vector<Floats>& u, const Vector<Floats>& v) const {
     const Floats zero(0.0f), blur(kBlur);
-    const std::array<Floats, 3> corner_u{zero, Floats(frame_.length), Floats(frame_.top_u)};
-    const std::array<Floats, 3> corner_v{zero, zero, Floats(frame_.top_v)};
     auto out = zero < zero;
     for (std::size_t n = 0; n < 3; ++n) {
         const std::size_t m = n == 2 ? 0 : n + 1, other = 3 - n - m;
@@ -106,10 +108,10 @@ unsigned Column::apart(const Vector<Floats>& u, const Vector<Floats>& v) const {
             return along * (at_v - v[n]) - across * (at_u - u[n]);
         };
         const Floats own = side(u[other], v[other]);
-        const Floats a = side(corner_u[0], corner_v[0]), b = side(corner_u[1], corner_v[1]),
-                     c = side(corner_u[2], corner_v[2]);
+        const Floats a = side(walls_[0].u, walls_[0].v), b = side(walls_[1].u, walls_[1].v),
+                     c = side(walls_[2].u, walls_[2].v);
         const Floats longer = greatest(along, zero - along) + greatest(across, zero - across);
-        const Floats margin = blur * longer * Floats(1 + frame_.length);
+        const Floats margin = blur * longer * Floats(1 + extent_);
         out = out | ((zero < own) & (greatest(a, greatest(b, c)) < zero - margin)) |
               ((own < zero) & (margin < least(a, least(b, c))));
     }
@@ -122,11 +124,11 @@ unsigned Column::has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v,
     const Floats zero(0.0f), u1 = u[1] - u[0], v1 = v[1] - v[0], h1 = h[1] - h[0], u2 = u[2] - u[0], v2 = v[2] - v[0],
                              h2 = h[2] - h[0], area = u1 * v2 - u2 * v1;
     const Floats along = (h1 * v2 - h2 * v1) / area, across = (u1 * h2 - u2 * h1) / area;
-    const auto height = [&](float at_u, float at_v) {
-        return h[0] + along * (Floats(at_u) - u[0]) + across * (Floats(at_v) - v[0]);
+    const auto height = [&](const Wall& corner) {
+        return h[0] + along * (Floats(corner.u) - u[0]) + across * (Floats(corner.v) - v[0]);
     };
-    const Floats a = height(0, 0), b = height(frame_.length, 0), c = height(frame_.top_u, frame_.top_v);
-    const Floats limit(limit_ - kTilt * (1 + frame_.length));
+    const Floats a = height(walls_[0]), b = height(walls_[1]), c = height(walls_[2]);
+    const Floats limit(limit_ - kTilt * (1 + extent_));
     constexpr float kUpright = 0.01f;
     return ((greatest(a, greatest(b, c)) <= limit) & (zero - limit <= least(a, least(b, c))) &
             ((Floats(kUpright) < area) | (area < Floats(-kUpright))))
@@ -138,16 +140,8 @@ Column::Part Column::part_of(const std::array<Height, 3>& triangle) const {
     std::array<Height, 6> part, next;
     std::size_t count = 3;
     std::copy(triangle.begin(), triangle.end(), part.begin());
-    const float base = frame_.top_u - frame_.length;
-    const std::array<std::array<float, 3>, 3> walls{
-        // u, v, constant: inside is where the sum is not above a blur
-        std::array{0.0f, -1.0f, 0.0f},
-        std::array{frame_.top_v, -base, -frame_.length * frame_.top_v},
-        std::array{-frame_.top_v, frame_.top_u, 0.0f},
-    };
-    for (const auto& [along, across, constant] : walls) {
-        const float blur = kBlur * std::hypot(along, across);
-        const auto beyond = [&](const Height& at) { return along * at.u + across * at.v + constant - blur; };
+    for (const Wall& wall : walls_) {
+        const auto beyond = [&](const Height& at) { return -wall.depth(at.u, at.v) - wall.blur; };
         std::size_t kept = 0;
         for (std::size_t n = 0; n < count; ++n) {
             const Height &from = part[n], &to = part[n + 1 == count ? 0 : n + 1];
@@ -171,7 +165,8 @@ Column::Part Column::part_of(const std::array<Height, 3>& triangle) const {
 
 // Is a point of the triangle covered an odd number of times? No as well if that is hard to tell.
 bool Column::is_odd_at(float share, float other_share) const {
-    const Floats at_u(share * frame_.length + other_share * frame_.top_u), at_v(other_share * frame_.top_v);
+    const Floats at_u(walls_[0].u + share * walls_[0].along - other_share * walls_[2].along),
+        at_v(walls_[0].v + share * walls_[0].across - other_share * walls_[2].across);
     const Floats zero(0.0f), one(1.0f), blur(kBlur);
     const auto size = [&](const Floats& a) { return greatest(a, zero - a); };
     int covered = 0;

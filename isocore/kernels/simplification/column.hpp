@@ -11,33 +11,47 @@
 #include <cstddef>
 #include <vector>
 
-#include "common/facets.hpp"
+#include "common/vectors.hpp"
 #include "simplification/patch.hpp"
 
 namespace isocore::simplification {
 
 class Column {
   public:
-    // Does the test prove that all points of the triangle with this frame lie within the limit of the patch?
-    bool is_covered(const Facets::Frame& frame, const Patch& patch, float limit);
+    // Does the test prove that all points of a triangle lie within the limit of the patch? The patch's places are those
+    // in a frame of the triangle's plane, and so are the triangle's, all at height 0, counter-clockwise seen from
+    // above.
+    bool is_covered(const std::array<Spot, 3>& triangle, const Patch& patch, float limit);
 
     // How far, at most.
     float distance() const { return distance_; }
 
   private:
-    // A place beside the triangle: along its first side, across it, and above it.
+    // A place in the frame: two coordinates in the plane, and the height above it.
     struct Height {
         float u, v, h;
     };
+    // A side of the triangle: where it begins, its way, and how far outside is still taken for inside.
+    struct Wall {
+        float u, v, along, across, blur;
+
+        // Positive inside.
+        template <class Number>
+        Number depth(const Number& at_u, const Number& at_v) const {
+            return Number(along) * (at_v - Number(v)) - Number(across) * (at_u - Number(u));
+        }
+    };
     enum class Part { none, within, beyond, across };
 
+    void build_walls(const std::array<Spot, 3>& triangle);
     bool add_parts(const Patch& patch, std::size_t first);
     unsigned has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const;
     unsigned apart(const Vector<Floats>& u, const Vector<Floats>& v) const;
     Part part_of(const std::array<Height, 3>& triangle) const;
     bool is_odd_at(float share, float other_share) const;
 
-    Facets::Frame frame_;
+    std::array<Wall, 3> walls_{};
+    float extent_ = 0;  // of the triangle's coordinates, at most
     float limit_ = 0, distance_ = 0;
     // Of the triangles with parts within the limit: u and v of each corner.
     std::array<std::vector<float>, 6> places_;

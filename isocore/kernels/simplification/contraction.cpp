@@ -63,7 +63,7 @@ bool Contraction<Real>::are_allowed() {
     }
     for (std::size_t n = 0; n < count_; ++n) {
         auto& [star, facets, witnesses, distances] = parts_[n];
-        if (!backward_.are_near(star, limit_here(star))) return refuse(Rule::back, star);
+        if (!backward_.are_near(star, facets, limit_here(star))) return refuse(Rule::back, star);
         for (std::size_t face = 1; face + 1 < star.count; ++face) distances[face] = backward_.distance(face);
     }
     return true;

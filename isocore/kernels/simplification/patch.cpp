@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 #include <utility>
 
 namespace isocore::simplification {
@@ -43,14 +44,29 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
             const std::int32_t triangle = reference.entry(entry);
             if (!reference.is_in(triangle, sheet)) continue;
             for (std::size_t n = 0; n < 3; ++n) {
-                const Spot at = mesh.relative(reference.corner(triangle, n), origin);
-                for (std::size_t a = 0; a < 3; ++a) to[(3 * n + a) * room_] = at[a];
+                const Real* const at = reference.corner(triangle, n);
+                for (std::size_t a = 0; a < 3; ++a) {
+                    if constexpr (std::is_same_v<Real, float>)
+                        to[(3 * n + a) * room_] = at[a];
+                    else
+                        to[(3 * n + a) * room_] = static_cast<float>(at[a] - origin[a]);
+                }
             }
             to[kBorder * room_] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
             ++to;
         }
         size_ = static_cast<std::size_t>(to - numbers_.data());
     });
+    // Then eight at once.
+    for (std::size_t n = 0; n < kBorder; ++n) {
+        const Floats by(mesh.stretch()[n % 3]);
+        for (float* at = column(n); at < column(n) + size_; at += kLanes) {
+            if constexpr (std::is_same_v<Real, float>)
+                ((Floats(at) - Floats(origin[n % 3])) * by).store(at);
+            else
+                (Floats(at) * by).store(at);
+        }
+    }
     end();
 }
 
@@ -59,23 +75,65 @@ template void Patch::gather(const Reference<float>&, const Mesh<float>&, const s
 template void Patch::gather(const Reference<double>&, const Mesh<double>&, const std::array<double, 3>&, const Box&,
                             std::uint32_t);
 
+// Which of eight triangles have boxes that touch this one.
+unsigned Patch::touching(std::size_t first, const Box& box) const {
+    auto apart = Floats(0.0f) < Floats(0.0f);
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto at = [&](std::size_t n) { return Floats(column(3 * n + a) + first); };
+        apart = apart | (greatest(at(0), greatest(at(1), at(2))) < Floats(box.low[a])) |
+                (Floats(box.high[a]) < least(at(0), least(at(1), at(2))));
+    }
+    return ~apart.bits();
+}
+
 void Patch::select(const Patch& from, const Box& box) {
-    size_ = 0;
-    if (room_ < from.size_ + 2 * kLanes) make_room(2 * from.size_ + 2 * kLanes);
-    for (std::size_t first = 0; first < from.size_; first += kLanes) {
-        auto apart = Floats(0.0f) < Floats(0.0f);
-        for (std::size_t a = 0; a < 3; ++a) {
-            const auto at = [&](std::size_t n) { return Floats(from.column(3 * n + a) + first); };
-            apart = apart | (greatest(at(0), greatest(at(1), at(2))) < Floats(box.low[a])) |
-                    (Floats(box.high[a]) < least(at(0), least(at(1), at(2))));
-        }
-        const unsigned valid = from.size_ - first < kLanes ? (1u << (from.size_ - first)) - 1 : 255u;
-        const unsigned bits = ~apart.bits() & valid;
+    const std::size_t count = make_room_for(from);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        const unsigned bits = from.touching(first, box) & valid(first, count);
         if (bits == 0) continue;
         for (std::size_t n = 0; n < kColumns; ++n) Floats(from.column(n) + first).pack(bits, column(n) + size_);
         size_ += static_cast<std::size_t>(std::popcount(bits));
     }
     end();
+}
+
+void Patch::select(const Patch& from, const Box& box, const Facets::Frame& frame, float margin) {
+    const std::size_t count = make_room_for(from);
+    const std::array<Vector<Floats>, 3> axes{Vector<Floats>{frame.u[0], frame.u[1], frame.u[2]},
+                                             {frame.v[0], frame.v[1], frame.v[2]},
+                                             {frame.h[0], frame.h[1], frame.h[2]}};
+    const Vector<Floats> origin{frame.origin[0], frame.origin[1], frame.origin[2]};
+    const Spot low{std::min(0.0f, frame.top_u) - margin, -margin, -margin};
+    const Spot high{std::max(frame.length, frame.top_u) + margin, frame.top_v + margin, margin};
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        unsigned bits = from.touching(first, box) & valid(first, count);
+        if (bits == 0) continue;
+        std::array<Vector<Floats>, 3> seen;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const auto at = minus(from.in_lanes(n, first), origin);
+            for (std::size_t a = 0; a < 3; ++a) seen[n][a] = dot(at, axes[a]);
+        }
+        auto apart = Floats(0.0f) < Floats(0.0f);
+        for (std::size_t a = 0; a < 3; ++a) {
+            apart = apart | (greatest(seen[0][a], greatest(seen[1][a], seen[2][a])) < Floats(low[a])) |
+                    (Floats(high[a]) < least(seen[0][a], least(seen[1][a], seen[2][a])));
+        }
+        bits &= ~apart.bits();
+        if (bits == 0) continue;
+        for (std::size_t n = 0; n < kBorder; ++n) seen[n / 3][n % 3].pack(bits, column(n) + size_);
+        Floats(from.column(kBorder) + first).pack(bits, column(kBorder) + size_);
+        size_ += static_cast<std::size_t>(std::popcount(bits));
+    }
+    end();
+}
+
+// For as many as another patch has, which may be this one: then those that are kept take the places of others. Returns
+// how many there were, and forgets them.
+std::size_t Patch::make_room_for(const Patch& from) {
+    const std::size_t count = from.size_;
+    if (room_ < count + 2 * kLanes) make_room(2 * count + 2 * kLanes);
+    size_ = 0;
+    return count;
 }
 
 // Keeps what there is.

@@ -1,5 +1,5 @@
 // patch.hpp - Some of the reference's triangles, copied close together, coordinate by coordinate. Places are relative
-// to a vertex of the mesh, and stretched.
+// to a vertex of the mesh, and stretched; or seen from a triangle: along its first side, across it, and above it.
 #pragma once
 
 #include <array>
@@ -27,8 +27,11 @@ class Patch {
     template <class Real>
     void gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
                 const Box& box, std::uint32_t sheet);
-    // Takes those of another patch whose boxes touch this one.
+    // Takes those of another patch, or of this one, whose boxes touch this one.
     void select(const Patch& from, const Box& box);
+    // Takes those of another patch of which a point may lie within the margin of a triangle with this box, a margin
+    // included, and this frame. Their places are then those that they have in the frame.
+    void select(const Patch& from, const Box& box, const Facets::Frame& frame, float margin);
 
     // Corner `corner` of eight triangles from `first` on. Lanes past the last triangle hold corners far away.
     Vector<Floats> in_lanes(std::size_t corner, std::size_t first) const {
@@ -45,7 +48,13 @@ class Patch {
     static constexpr std::size_t kBorder = 9, kColumns = 10;
 
     void make_room(std::size_t size);
+    std::size_t make_room_for(const Patch& from);
     void end();
+    unsigned touching(std::size_t first, const Box& box) const;
+    // Which of eight triangles from `first` on there are, of so many.
+    static unsigned valid(std::size_t first, std::size_t count) {
+        return count - first < kLanes ? (1u << (count - first)) - 1 : 255u;
+    }
 
     std::size_t size_ = 0;
     const float* column(std::size_t number) const { return numbers_.data() + number * room_; }

@@ -40,10 +40,8 @@ class Reference {
         return entries_.empty() ? static_cast<std::int32_t>(number) : entries_[number];
     }
 
-    std::array<Real, 3> corner(std::int32_t triangle, std::size_t n) const {
-        const Real* at = mesh_.vertices + 3 * vertex(triangle, n);
-        return {at[0], at[1], at[2]};
-    }
+    // x, y and z.
+    const Real* corner(std::int32_t triangle, std::size_t n) const { return mesh_.vertices + 3 * vertex(triangle, n); }
     bool is_in(std::int32_t triangle, std::uint32_t sheet) const {
         return mesh_.sheets == nullptr || mesh_.sheets[triangle] == sheet;
     }
