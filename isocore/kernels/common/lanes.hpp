@@ -199,6 +199,11 @@ class FloatLanes {
         return where([&](std::size_t n) { return (a.ints(n) & b.ints(n)) == 0; });
     }
 
+    // Where all bits are the same: lanes may be used as whole numbers.
+    friend Mask have_same_bits(const FloatLanes& a, const FloatLanes& b) {
+        return where([&](std::size_t n) { return a.ints(n) == b.ints(n); });
+    }
+
     friend FloatLanes choose(const Mask& mask, const FloatLanes& a, const FloatLanes& b) {
         return by([&](std::size_t n) { return mask.registers[n] ? a.registers_[n] : b.registers_[n]; });
     }

@@ -8,12 +8,6 @@ namespace isocore::simplification {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr std::array<float, Ring::kRoom> kNumbers = [] {
-    std::array<float, Ring::kRoom> out{};
-    for (std::size_t n = 0; n < out.size(); ++n) out[n] = static_cast<float>(n);
-    return out;
-}();
-
 // Asks for memory that is looked at soon.
 template <class T>
 void prefetch([[maybe_unused]] const T* place) {
@@ -22,40 +16,24 @@ void prefetch([[maybe_unused]] const T* place) {
 #endif
 }
 
-float size_of(const Spot& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]); }
+Floats size_of(const Floats& a) { return greatest(a, Floats(0.0f) - a); }
+Floats size_of(const Vector<Floats>& a) { return size_of(a[0]) + size_of(a[1]) + size_of(a[2]); }
 
 }  // namespace
 
 template <class Real>
 bool Crossings<Real>::are_there(const Star& star, const Facets& facets, const std::vector<const Star*>& others) {
     prepare(star, facets);
-    for (std::size_t n = 1; n + 2 < star.count; ++n) {
-        const Candidate face{{star.target(), star.neighbours[n], star.neighbours[n + 1]},
-                             {0, static_cast<int>(n), static_cast<int>(n + 1)},
-                             {star.place(0), star.place(n), star.place(n + 1)}};
-        if (meets_a_face(star, face, n + 1)) return true;
-    }
+    take_faces(star);
+    if (meet_faces(star, true)) return true;
     for (const Star* other : others) {
-        if (meets_faces_of(star, *other)) return true;
+        take_faces(*other);
+        if (meet_faces(star, false)) return true;
     }
     find_cubes(star);
-    find_candidates(star);
-    const bool has_others = star.vanishing() == 1;
-    return std::any_of(candidates_.begin(), candidates_.end(), [&](std::int32_t triangle) {
-        const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
-        if (has_others && std::find(corners.begin(), corners.end(), star.centre) != corners.end()) return false;
-        const auto found = candidate(star, corners);
-        return found && meets_a_face(star, *found, 1);
-    });
-}
-
-template <class Real>
-bool Crossings<Real>::meets_faces_of(const Star& star, const Star& other) const {
-    for (std::size_t n = 1; n + 1 < other.count; ++n) {
-        const auto found = candidate(star, {other.target(), other.neighbours[n], other.neighbours[n + 1]});
-        if (found && meets_a_face(star, *found, 1)) return true;
-    }
-    return false;
+    find_triangles(star);
+    take_triangles(star);
+    return meet_faces(star, false);
 }
 
 template <class Real>
@@ -63,10 +41,10 @@ void Crossings<Real>::prepare(const Star& star, const Facets& facets) {
     reach_ = star.reach();
     lowest_.fill(kInfinity);
     highest_.fill(-kInfinity);
-    const Spot target = star.place(0);
+    target_ = star.place(0);
     for (std::size_t n = 1; n + 1 < star.count; n += kLanes) {
         for (std::size_t a = 0; a < 3; ++a) {
-            const Floats to(target[a]), one(star.places[a].data() + n), other(star.places[a].data() + n + 1);
+            const Floats to(target_[a]), one(star.places[a].data() + n), other(star.places[a].data() + n + 1);
             const Floats low = least(to, least(one, other)), high = greatest(to, greatest(one, other));
             low.store(low_[a].data() + n);
             high.store(high_[a].data() + n);
@@ -93,105 +71,175 @@ void Crossings<Real>::find_cubes(const Star& star) {
 
 // Each triangle in these cubes once, but for the star's own.
 template <class Real>
-void Crossings<Real>::find_candidates(const Star& star) {
+void Crossings<Real>::find_triangles(const Star& star) {
     for (std::size_t n = 0; n < star.count; ++n) {
         if (star.triangles[n] != kNone) seen_triangles_.add(star.triangles[n]);
     }
-    candidates_.clear();
+    triangles_.clear();
     for (const std::int32_t cube : cubes_) {
         if (!seen_cubes_.add(cube)) continue;
         grid_.each_in(cube, [&](std::int32_t triangle) {
             if (!seen_triangles_.add(triangle)) return;
-            candidates_.push_back(triangle);
+            triangles_.push_back(triangle);
             prefetch(mesh_.triangles.data() + triangle);
         });
     }
     for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
-    for (const std::int32_t triangle : candidates_) seen_triangles_.forget_near(triangle);
+    for (const std::int32_t triangle : triangles_) seen_triangles_.forget_near(triangle);
     for (std::size_t n = 0; n < star.count; ++n) {
         if (star.triangles[n] != kNone) seen_triangles_.forget_near(star.triangles[n]);
     }
-    for (const std::int32_t triangle : candidates_) {
+    for (const std::int32_t triangle : triangles_) {
         for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)
             prefetch(mesh_.places.data() + corner);
     }
 }
 
-// Nothing if the triangle is clearly apart from all faces.
+// The faces are candidates for each other.
 template <class Real>
-auto Crossings<Real>::candidate(const Star& star, const std::array<std::int32_t, 3>& corners) const
-    -> std::optional<Candidate> {
-    const auto& origin = mesh_.places[static_cast<std::size_t>(star.centre)].at;
-    Candidate out{corners, {-1, -1, -1}, {}};
-    for (std::size_t n = 0; n < 3; ++n)
-        out.at[n] = mesh_.relative(mesh_.places[static_cast<std::size_t>(out.numbers[n])].at, origin);
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (std::max({out.at[0][a], out.at[1][a], out.at[2][a]}) < lowest_[a]) return {};
-        if (highest_[a] < std::min({out.at[0][a], out.at[1][a], out.at[2][a]})) return {};
-    }
-    for (std::size_t n = 0; n < 3; ++n) {
-        for (std::size_t m = 0; m < star.count; ++m) {
-            if (star.neighbours[m] == out.numbers[n]) out.in_ring[n] = static_cast<int>(m);
+void Crossings<Real>::take_faces(const Star& star) {
+    const std::size_t count = star.face_count();
+    candidates_.make_room(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::array<std::size_t, 3> ring{0, n + 1, n + 2};
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t a = 0; a < 3; ++a) candidates_.columns[3 * c + a][n] = star.places[a][ring[c]];
+            candidates_.columns[Candidates::kNumbers + c][n] = std::bit_cast<float>(star.neighbours[ring[c]]);
         }
     }
-    return out;
+    candidates_.count = count;
+    candidates_.end();
 }
 
-// Two triangles are apart if all their corners lie strictly on one side of the other's plane; corners that they have in
-// common may lie in it.
+// Those triangles that are not clearly apart from all faces.
 template <class Real>
-bool Crossings<Real>::meets_a_face(const Star& star, const Candidate& candidate, std::size_t first_face) const {
-    const auto& at = candidate.at;
-    Spot low, high;
-    for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::min({at[0][a], at[1][a], at[2][a]});
-        high[a] = std::max({at[0][a], at[1][a], at[2][a]});
-    }
-    const Spot one = minus(at[1], at[0]), other = minus(at[2], at[0]), normal = cross(one, other);
-    const float reach = std::max({reach_, size_of(at[0]), size_of(at[1]), size_of(at[2])});
-    const Floats blur(1e-6f * size_of(one) * size_of(other) * reach), face_blur(1e-5f * reach), zero(0.0f);
-    PerFace least_of, most_of;  // how far each neighbour lies from the candidate's plane
-    for (std::size_t n = 0; n <= star.count; n += kLanes) {
-        const auto to = minus(star.in_lanes(n), {at[0][0], at[0][1], at[0][2]});
-        const Floats off = dot(to, {normal[0], normal[1], normal[2]});
-        off.store(least_of.data() + n);
-        off.store(most_of.data() + n);
-    }
-    for (const int n : candidate.in_ring) {
-        if (n < 0) continue;
-        least_of[static_cast<std::size_t>(n)] = kInfinity;
-        most_of[static_cast<std::size_t>(n)] = -kInfinity;
-    }
-    const Spot target = star.place(0);
-    for (std::size_t n = first_face; n + 1 < star.count; n += kLanes) {
-        const Floats lowest = least(least_of[0], least(Floats(least_of.data() + n), Floats(least_of.data() + n + 1)));
-        const Floats highest =
-            greatest(most_of[0], greatest(Floats(most_of.data() + n), Floats(most_of.data() + n + 1)));
-        auto apart = (blur < lowest) | (highest < zero - blur);
-        Floats below(kInfinity), above(-kInfinity);
-        const Floats number(kNumbers.data() + n), next(kNumbers.data() + n + 1);
+void Crossings<Real>::take_triangles(const Star& star) {
+    const auto& origin = mesh_.places[static_cast<std::size_t>(star.centre)].at;
+    const bool has_others = star.vanishing() == 1;  // whose triangles are the star's own
+    near_.make_room(triangles_.size());
+    std::size_t count = 0;
+    for (const std::int32_t triangle : triangles_) {
+        const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
+        if (has_others && std::find(corners.begin(), corners.end(), star.centre) != corners.end()) continue;
         for (std::size_t c = 0; c < 3; ++c) {
-            const Spot to = minus(at[c], target);
-            Floats off(0.0f);
-            for (std::size_t a = 0; a < 3; ++a) off = off + Floats(normal_[a].data() + n) * Floats(to[a]);
-            const Floats mine(static_cast<float>(candidate.in_ring[c]));
-            const auto shared = (number == mine) | (next == mine) | (mine == zero);
-            below = least(below, choose(shared, Floats(kInfinity), off));
-            above = greatest(above, choose(shared, Floats(-kInfinity), off));
+            const auto& at = mesh_.places[static_cast<std::size_t>(corners[c])].at;
+            for (std::size_t a = 0; a < 3; ++a) near_.columns[3 * c + a][count] = static_cast<float>(at[a] - origin[a]);
+            near_.columns[Candidates::kNumbers + c][count] = std::bit_cast<float>(corners[c]);
         }
-        apart = apart | (face_blur < below) | (above < zero - face_blur);
-        for (std::size_t a = 0; a < 3; ++a)
-            apart =
-                apart | (Floats(high_[a].data() + n) < Floats(low[a])) | (Floats(high[a]) < Floats(low_[a].data() + n));
-        const std::size_t faces = std::min(kLanes, star.count - 1 - n);
-        for (unsigned bits = ~apart.bits() & ((1u << faces) - 1); bits != 0; bits &= bits - 1) {
-            const std::size_t face = n + static_cast<std::size_t>(std::countr_zero(bits));
-            if (meet(exact({star.target(), star.neighbours[face], star.neighbours[face + 1]}),
-                     exact(candidate.numbers)))
-                return true;
+        ++count;
+    }
+    near_.count = count;
+    near_.end();
+    candidates_.make_room(near_.count);
+    candidates_.count = 0;
+    for (std::size_t first = 0; first < near_.count; first += kLanes) {
+        std::array<Floats, Candidates::kColumns> columns;
+        for (std::size_t n = 0; n < columns.size(); ++n) columns[n] = near_.in_lanes(n, first);
+        auto apart = Floats(0.0f) < Floats(0.0f);
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t c = 0; c < 3; ++c) columns[3 * c + a] = columns[3 * c + a] * Floats(mesh_.stretch()[a]);
+            apart = apart | (greatest(columns[a], greatest(columns[3 + a], columns[6 + a])) < Floats(lowest_[a])) |
+                    (Floats(highest_[a]) < least(columns[a], least(columns[3 + a], columns[6 + a])));
+        }
+        const unsigned valid = near_.count - first < kLanes ? (1u << (near_.count - first)) - 1 : 255u;
+        const unsigned bits = ~apart.bits() & valid;
+        if (bits == 0) continue;
+        for (std::size_t n = 0; n < columns.size(); ++n)
+            columns[n].pack(bits, candidates_.columns[n].data() + candidates_.count);
+        candidates_.count += static_cast<std::size_t>(std::popcount(bits));
+    }
+    candidates_.end();
+}
+
+template <class Real>
+void Crossings<Real>::look_at(const Star& star, std::size_t first) {
+    Eight& e = eight_;
+    const Floats infinity(kInfinity);
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t a = 0; a < 3; ++a) e.at[c][a] = candidates_.in_lanes(3 * c + a, first);
+        const Floats number = candidates_.in_lanes(Candidates::kNumbers + c, first);
+        e.in_ring[c] = Floats(-1.0f);
+        for (std::size_t m = 0; m < star.count; ++m)
+            e.in_ring[c] = choose(have_same_bits(number, Floats(std::bit_cast<float>(star.neighbours[m]))),
+                                  Floats(static_cast<float>(m)), e.in_ring[c]);
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        e.low[a] = least(e.at[0][a], least(e.at[1][a], e.at[2][a]));
+        e.high[a] = greatest(e.at[0][a], greatest(e.at[1][a], e.at[2][a]));
+    }
+    const auto one = minus(e.at[1], e.at[0]), other = minus(e.at[2], e.at[0]), normal = cross(one, other);
+    e.reach = greatest(Floats(reach_), greatest(size_of(e.at[0]), greatest(size_of(e.at[1]), size_of(e.at[2]))));
+    e.blur = Floats(1e-6f) * size_of(one) * size_of(other) * e.reach;
+    for (std::size_t m = 0; m < star.count; ++m) {
+        const Spot place = star.place(m);
+        const Floats off = dot(minus({place[0], place[1], place[2]}, e.at[0]), normal);
+        const Floats number(static_cast<float>(m));
+        const auto is_corner = (e.in_ring[0] == number) | (e.in_ring[1] == number) | (e.in_ring[2] == number);
+        e.least[m] = choose(is_corner, infinity, off);
+        e.most[m] = choose(is_corner, Floats(-kInfinity), off);
+    }
+}
+
+// Which of the eight are apart from a face. Two triangles are if all their corners lie strictly on one side of the
+// other's plane; corners that they have in common may lie in it.
+template <class Real>
+unsigned Crossings<Real>::apart(std::size_t face) const {
+    const Eight& e = eight_;
+    const Floats zero(0.0f), face_blur = Floats(1e-5f) * e.reach, own(static_cast<float>(face)),
+                             next(static_cast<float>(face + 1));
+    const Floats lowest = least(e.least[0], least(e.least[face], e.least[face + 1]));
+    const Floats highest = greatest(e.most[0], greatest(e.most[face], e.most[face + 1]));
+    auto apart = (e.blur < lowest) | (highest < zero - e.blur);
+    const Vector<Floats> target{target_[0], target_[1], target_[2]},
+        normal{normal_[0][face], normal_[1][face], normal_[2][face]};
+    Floats below(kInfinity), above(-kInfinity);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Floats off = dot(minus(e.at[c], target), normal);
+        const auto shared = (e.in_ring[c] == own) | (e.in_ring[c] == next) | (e.in_ring[c] == zero);
+        below = least(below, choose(shared, Floats(kInfinity), off));
+        above = greatest(above, choose(shared, Floats(-kInfinity), off));
+    }
+    apart = apart | (face_blur < below) | (above < zero - face_blur);
+    for (std::size_t a = 0; a < 3; ++a)
+        apart = apart | (Floats(high_[a][face]) < e.low[a]) | (e.high[a] < Floats(low_[a][face]));
+    return apart.bits();
+}
+
+// are_faces: candidate n is face n + 1, and is looked at with the faces before it only.
+template <class Real>
+bool Crossings<Real>::meet_faces(const Star& star, bool are_faces) {
+    for (std::size_t first = 0; first < candidates_.count; first += kLanes) {
+        look_at(star, first);
+        for (std::size_t face = 1; face + 1 < star.count; ++face) {
+            unsigned bits = ~apart(face) & 255u;
+            for (; bits != 0; bits &= bits - 1) {
+                const std::size_t n = first + static_cast<std::size_t>(std::countr_zero(bits));
+                if (n >= candidates_.count) break;
+                if (are_faces && n < face) continue;
+                if (meet(exact({star.target(), star.neighbours[face], star.neighbours[face + 1]}),
+                         exact(candidates_.numbers(n))))
+                    return true;
+            }
         }
     }
     return false;
+}
+
+template <class Real>
+void Crossings<Real>::Candidates::make_room(std::size_t room) {
+    if (columns[0].size() >= room + 2 * kLanes) return;
+    for (auto& column : columns) column.resize(2 * room + 2 * kLanes);
+}
+
+template <class Real>
+void Crossings<Real>::Candidates::end() {
+    for (auto& column : columns) Floats(0.0f).store(column.data() + count);
+}
+
+template <class Real>
+std::array<std::int32_t, 3> Crossings<Real>::Candidates::numbers(std::size_t triangle) const {
+    const auto number = [&](std::size_t c) { return std::bit_cast<std::int32_t>(columns[kNumbers + c][triangle]); };
+    return {number(0), number(1), number(2)};
 }
 
 template <class Real>

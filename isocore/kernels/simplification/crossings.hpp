@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "common/lanes.hpp"
 #include "common/meeting.hpp"
 #include "simplification/star.hpp"
 #include "simplification/triangle_grid.hpp"
@@ -50,29 +50,49 @@ class Crossings {
     std::size_t end_cube(std::size_t face) const { return starts_[face]; }
 
   private:
-    // A triangle that may meet some faces; corners that are neighbours of the star's centre, by their number there.
-    struct Candidate {
-        std::array<std::int32_t, 3> numbers;
-        std::array<int, 3> in_ring;
-        std::array<Spot, 3> at;
+    // Triangles that may meet some faces, coordinate by coordinate, so that eight are looked at together.
+    struct Candidates {
+        static constexpr std::size_t kNumbers = 9, kColumns = 12;
+
+        std::size_t count = 0;
+        std::array<std::vector<float>, kColumns>
+            columns;  // x, y, z of three corners; then the corners' numbers, as bits
+
+        void make_room(std::size_t room);
+        void end();  // so that lanes past the end hold numbers
+        Floats in_lanes(std::size_t column, std::size_t first) const { return Floats(columns[column].data() + first); }
+        std::array<std::int32_t, 3> numbers(std::size_t triangle) const;
+    };
+    // Eight of them, and what all faces ask of them.
+    struct Eight {
+        std::array<Vector<Floats>, 3> at;
+        Vector<Floats> low, high;
+        std::array<Floats, 3> in_ring;  // corners that are neighbours of the star's centre: their number there, or -1
+        Floats reach, blur;             // blur: of distances from the triangles' planes, which are not normalised
+        std::array<Floats, Ring::kRoom> least, most;  // how far each neighbour lies from a plane, if it is no corner
     };
 
     void prepare(const Star& star, const Facets& facets);
+    void take_faces(const Star& star);
     void find_cubes(const Star& star);
-    void find_candidates(const Star& star);
-    std::optional<Candidate> candidate(const Star& star, const std::array<std::int32_t, 3>& corners) const;
-    bool meets_faces_of(const Star& star, const Star& other) const;
-    bool meets_a_face(const Star& star, const Candidate& candidate, std::size_t first_face) const;
+    void find_triangles(const Star& star);
+    void take_triangles(const Star& star);
+    void look_at(const Star& star, std::size_t first);
+    unsigned apart(std::size_t face) const;
+    bool meet_faces(const Star& star, bool are_faces);
     Corners3 exact(const std::array<std::int32_t, 3>& numbers) const;
 
     using PerFace = std::array<float, Ring::kRoom>;
     const Mesh<Real>& mesh_;
     const TriangleGrid& grid_;
     NumberSet seen_cubes_, seen_triangles_;
-    std::vector<std::int32_t> cubes_, candidates_;
+    std::vector<std::int32_t> cubes_, triangles_;
+    Candidates near_, candidates_;
+    Eight eight_;
     std::array<std::size_t, Ring::kRoom> starts_{};  // in cubes_, by face
     Vector<PerFace> normal_, low_, high_;            // of each face, from number 1 on
-    Spot lowest_{}, highest_{};                      // of all
+    Vector<float> target_{};
+    Spot lowest_{}, highest_{};  // of all
     float reach_ = 0;
 };
 
