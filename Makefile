@@ -46,7 +46,7 @@ demo: $(BUILT)  ## convert every sample into out/ and show the table
 	$(BIN)/isocore convert sample_volumes/knot.nii.gz -i 200 -d out
 	$(BIN)/isocore convert sample_volumes -d out --report out/report.json --report out/report.md
 
-meshes: $(BUILT)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=]: only what changed
+meshes: $(BUILT)  ## SCANS=dir OUT=dir ISO=300 [BACKEND=] [FORMAT=] [OPTIONS=]: only what changed
 	@$(MAKE) --no-print-directory -f examples/meshes.mk ISOCORE=$(BIN)/isocore
 
 test: $(READY)  ## run all tests

@@ -2,17 +2,19 @@
 #
 #     make -f meshes.mk -j4 SCANS=scans OUT=meshes ISO=300
 #
-# ISO may hold no value (isocore chooses), a number, otsu or pNN. BACKEND and FORMAT are those of `isocore convert`.
+# ISO may hold no value (isocore chooses), a number, otsu or pNN. BACKEND and FORMAT are those of `isocore convert`, and
+# OPTIONS are any further ones of it: OPTIONS='--cap --keep-largest 1'.
 # Names with spaces are beyond make; use `isocore convert scans -d meshes --if-changed` for those.
 SCANS   ?= scans
 OUT     ?= meshes
 ISO     ?=
 BACKEND ?=
 FORMAT  ?= ply
+OPTIONS ?=
 ISOCORE ?= isocore
 
-KNOWN    := nii nii.gz nrrd nhdr hdr vtu
-SETTINGS := $(ISO:%=-i %) $(BACKEND:%=-b %) -f $(FORMAT) --no-reference --threads 1 -q
+KNOWN    := nii nii.gz nrrd nhdr hdr mha mhd mgz mgh vti vtk vtu
+SETTINGS := $(ISO:%=-i %) $(BACKEND:%=-b %) -f $(FORMAT) --no-reference --threads 1 -q $(OPTIONS)
 FOUND    := $(foreach suffix,$(KNOWN),$(patsubst $(SCANS)/%.$(suffix),%,$(shell find $(SCANS) -name '*.$(suffix)')))
 MESHES   := $(FOUND:%=$(OUT)/%.$(FORMAT))
 
