@@ -38,8 +38,8 @@ FIELDS = (
         multiple=True,
         metavar="NAME|FILE|all",
         show_default="none",
-        help="Another field of the input, or all of them, at each vertex; of volumes also another one on the same "
-        "grid. In ply, vtp, glb and gii; repeatable.",
+        help="Another field of the input, or all of them, at each vertex; for a volume also another one's file, on the "
+        "same grid, as '{folder}/{stem}_FA.nii.gz' for each input. In ply, vtp, glb and gii; repeatable.",
     ),
     _output(
         "--colormap",

@@ -176,6 +176,20 @@ def test_of_several_volumes_the_one_of_the_same_number_is_carried(tmp_path):
         assert set(meshio.read(tmp_path / "out" / f"scan_v{n}.ply").point_data["other"]) == {n + 1.0}
 
 
+def test_each_input_carries_the_file_that_is_named_after_it(tmp_path):
+    """In its folder, by its stem; one without such a file is a failed row, and the others go on."""
+    for n, name in enumerate(("a", "b", "c")):
+        write_nifti(tmp_path / name / "t1.nii", ball())
+        if name != "b":
+            write_nifti(tmp_path / name / "t1_heat.nii", np.full((12, 12, 12), float(n)))
+    inputs = [tmp_path / name / "t1.nii" for name in ("a", "b", "c")]
+    more = ("-d", tmp_path / "out", "--name", "{parent}", "--carry", "{folder}/{stem}_heat.nii")
+    found = run(*inputs, "-i", 40, *more)
+    assert found.exit_code == 1 and "t1_heat.nii: is no field of the file" in found.stderr
+    for name, value in (("a", 0.0), ("c", 2.0)):
+        assert set(meshio.read(tmp_path / "out" / f"{name}.ply").point_data["t1_heat"]) == {value}
+
+
 def test_labels_carry_too_and_keep_their_colours(tmp_path):
     """Each label's surface has the values along its own vertices, also where smoothing moved them."""
     index = np.stack(np.meshgrid(*[np.arange(12)] * 3, indexing="ij"), axis=-1)

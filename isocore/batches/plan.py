@@ -135,6 +135,7 @@ class _Asked:
 
 
 def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
+    pattern = replace(pattern, read_options=_carrying(item, pattern.read_options))
     if item.refusal:  # one row, whatever is asked of each file in the folder
         place = naming.output or folder_of(item, naming) / item.path.name
         return replace(pattern, source=item.path, targets=(Target(Auto(), place),), refusal=item.refusal)
@@ -151,6 +152,19 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
         Target(choice, output_of(item, choice, pattern, naming, several=several), picture) for choice, picture in drawn
     )
     return replace(pattern, source=item.path, targets=targets)
+
+
+def _carrying(item: Input, options: ReadOptions) -> ReadOptions:
+    """What an input is to carry: files may be named after it and the folder it lies in."""
+    if not any("{" in name for name in options.carry):
+        return options
+    known = {"{stem}": item.stem, "{name}": item.path.name, "{parent}": item.parent, "{folder}": str(item.path.parent)}
+    filled = []
+    for name in options.carry:
+        for field, text in known.items():
+            name = name.replace(field, text)
+        filled.append(name)
+    return replace(options, carry=tuple(filled))
 
 
 def refuse_overwriting(jobs: Iterable[Job], *, written: Sequence[Named] = (), read: Sequence[Named] = ()) -> None:

@@ -47,7 +47,7 @@ def with_carried(volume: Volume, path: Path, options: ReadOptions, count: Count,
             warnings += tuple(f"{name}: {warning}" for warning in other.warnings)
         elif name not in own:
             have = ", ".join(sorted(own)) or "none besides the contoured one"
-            raise OptionError(f"--carry {name}: is no field of the file, which holds {have}, and no file on its grid")
+            raise OptionError(f"--carry {name}: is no field of the file, which holds {have}, and no file that is there")
     return replace(volume, carried=distinct_names(found), warnings=warnings)
 
 
