@@ -7,7 +7,7 @@ that no hole appears and no piece is lost; only where topology then allows no fe
 from __future__ import annotations
 
 import base64
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,10 @@ Colour = tuple[int, int, int]
 
 #: Of one copy, however much room there is: so many are drawn at once by any browser.
 MOST_TRIANGLES = 120_000
-#: Of a copy in a page: half a vertex of 6 bytes and a normal of 3, and 6 bytes of indices, as base64.
-BYTES_PER_TRIANGLE = 15
+#: Of a copy in a page: half a vertex of 6 bytes, a normal of 3 and a value of 2, and 6 bytes of indices, as base64.
+BYTES_PER_TRIANGLE = 16
+#: In place of a value that is no number; all others are steps below it.
+_NO_VALUE = 65535
 _FEWEST_TRIANGLES = 200
 _TRIES = 6
 #: Of the unit box: the cells of a grid so fine still have numbers of 64 bits.
@@ -33,7 +35,8 @@ class Copy:
     """A surface in 16-bit steps between two corners of its box, in the world.
 
     vertices: little-endian uint16, x, y, z of each. triangles: three vertex numbers each, uint16, or uint32 where there
-    are 65536 vertices or more. normals: int8, x, y, z of each vertex, or None. count: of triangles.
+    are 65536 vertices or more. normals: int8, x, y, z of each vertex, or None. count: of triangles. values: uint16, of
+    each vertex the steps of 1 / 65534 from the low to the high end of value_range, 65535 where there is none; or None.
     """
 
     low: Point
@@ -43,20 +46,25 @@ class Copy:
     normals: bytes | None
     count: int
     colour: Colour | None = None
+    values: bytes | None = None
+    value_range: tuple[float, float] | None = None
 
     @property
     def size(self) -> int:
         """Bytes in a page, about."""
-        return (len(self.vertices) + len(self.triangles) + len(self.normals or b"")) * 4 // 3
+        arrays = (self.vertices, self.triangles, self.normals or b"", self.values or b"")
+        return sum(map(len, arrays)) * 4 // 3
 
     def as_dict(self) -> dict[str, Any]:
         """Plain JSON types; arrays in base64."""
         texts = {"vertices": self.vertices, "triangles": self.triangles, "normals": self.normals}
+        texts |= {} if self.values is None else {"values": self.values}
         return {
             "low": list(self.low),
             "high": list(self.high),
             "count": self.count,
             "colour": None if self.colour is None else "#{:02x}{:02x}{:02x}".format(*self.colour),
+            **({} if self.value_range is None else {"value_range": list(self.value_range)}),
             **{name: None if data is None else base64.b64encode(data).decode() for name, data in texts.items()},
         }
 
@@ -66,9 +74,12 @@ def copy_from_dict(record: Any) -> Copy | None:
     try:
         data = {key: base64.b64decode(record[key], validate=True) for key in ("vertices", "triangles")}
         normals = None if record["normals"] is None else base64.b64decode(record["normals"], validate=True)
+        values = base64.b64decode(record["values"], validate=True) if "values" in record else None
+        limits = tuple(map(float, record["value_range"])) if values is not None else None
         low, high = (tuple(map(float, record[key])) for key in ("low", "high"))
         colour = None if record["colour"] is None else tuple(bytes.fromhex(record["colour"][1:]))
-        copy = Copy(low=low, high=high, normals=normals, count=int(record["count"]), colour=colour, **data)  # type: ignore[arg-type]
+        more = {"count": int(record["count"]), "colour": colour, "values": values, "value_range": limits}
+        copy = Copy(low=low, high=high, normals=normals, **data, **more)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError, OverflowError):
         return None
     return copy if _holds(copy) else None
@@ -84,6 +95,10 @@ def _holds(copy: Copy) -> bool:
         return False
     if copy.normals is not None and len(copy.normals) != 3 * vertices:
         return False
+    if copy.values is not None:
+        limits = copy.value_range or ()
+        if len(copy.values) != 2 * vertices or len(limits) != 2 or not np.isfinite(limits).all():
+            return False
     return int(np.frombuffer(copy.triangles, f"<u{width}").max()) < vertices
 
 
@@ -93,16 +108,23 @@ def triangles_each(page_bytes: int, surfaces: int) -> int:
     return max(share, _FEWEST_TRIANGLES) if page_bytes >= BYTES_PER_TRIANGLE else 0
 
 
-def copied(surface: Surface, most: int, colour: Colour | None = None) -> Copy | None:
-    """A copy with at most `most` triangles.
+def copied(
+    surface: Surface, most: int, colour: Colour | None = None, values: npt.NDArray[Any] | None = None
+) -> Copy | None:
+    """A copy with at most `most` triangles. values: (v,) what its vertices are coloured by.
 
     None where there is nothing to draw, where the box is longer than a double can say, or where memory is too short.
     """
     if not most or not len(surface.triangles):
         return None
     try:
-        vertices, triangles, normals = reduced(surface.vertices, surface.triangles, most, surface.normals)
-        return _packed(vertices, triangles, normals, surface.offset, colour)
+        vertices, triangles, kept = _fewer(surface.vertices, surface.triangles, most)
+        normals = surface.normals if kept is not None else None
+        copy = _packed(vertices, triangles, None if normals is None else normals[kept], surface.offset, colour)
+        if copy is None or values is None or kept is None:
+            return copy
+        steps, limits = _in_steps(values[kept])
+        return copy if limits is None else replace(copy, values=steps.tobytes(), value_range=limits)
     except MemoryError:
         return None
 
@@ -118,14 +140,33 @@ def reduced(
     The mesh itself where it has no more, else one with the same pieces and handles wherever so many triangles can have
     them. Elsewhere vertices in one cell of a grid are one.
     """
+    vertices, triangles, kept = _fewer(vertices, triangles, most)
+    return vertices, triangles, None if normals is None or kept is None else normals[kept]
+
+
+def _fewer(
+    vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], most: int
+) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], npt.NDArray[np.int32] | slice | None]:
+    """Vertices and triangles as `reduced` says, and which of the vertices these are; None where they are new ones."""
     if len(triangles) <= most:
-        return vertices, triangles, normals
+        return vertices, triangles, slice(None)
     places = _in_unit_box(vertices)
     _, triangles, kept = sketched(places.astype(np.float32), triangles, most)
-    vertices, normals = vertices[kept], None if normals is None else normals[kept]
+    vertices = vertices[kept]
     if len(triangles) <= most:
-        return vertices, triangles, normals
+        return vertices, triangles, kept
     return (*_clustered(vertices, triangles, most), None)
+
+
+def _in_steps(values: npt.NDArray[Any]) -> tuple[npt.NDArray[np.uint16], tuple[float, float] | None]:
+    """Values as a copy has them, and the range of the steps; None where none is a number."""
+    finite = np.isfinite(values)
+    if not finite.any():
+        return np.empty(0, "<u2"), None
+    low, high = float(values[finite].min()), float(values[finite].max())
+    with np.errstate(over="ignore", invalid="ignore"):
+        share = np.where(finite, (values / 2.0 - low / 2) / ((high / 2 - low / 2) or 1.0), 0.0)
+    return np.where(finite, np.rint(share * (_NO_VALUE - 1)), _NO_VALUE).astype("<u2"), (low, high)
 
 
 def _clustered(

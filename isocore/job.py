@@ -157,12 +157,19 @@ class Job:
         return self.format in FIELD_FORMATS
 
     @property
+    def colours_by_field(self) -> bool:
+        """Are surfaces coloured by a field, where one is carried? By default, but for labels, which have a colour."""
+        labels = any(isinstance(one.choice, Label) for one in self.targets)
+        return self.colour is None and (self._map_is_asked or not labels)
+
+    @property
     def colours_vertices(self) -> bool:
-        """Does the format get a colour for every vertex, where fields are carried? By default glb, but for labels."""
-        if self.colour is not None or self.format not in ("glb", "ply"):
-            return False
-        asked = any(given is not None for given in (self.colormap, self.color_by, self.color_range))
-        return asked or (self.format == "glb" and not any(isinstance(one.choice, Label) for one in self.targets))
+        """Does the file get a colour for every vertex, where fields are carried? GLB does by default, PLY if asked."""
+        return self.colours_by_field and (self.format == "glb" or (self.format == "ply" and self._map_is_asked))
+
+    @property
+    def _map_is_asked(self) -> bool:
+        return any(given is not None for given in (self.colormap, self.color_by, self.color_range))
 
     @property
     def normals(self) -> bool:

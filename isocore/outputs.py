@@ -12,6 +12,7 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from isocore.ambiguities import find_ambiguities
+from isocore.copies import Copy, copied
 from isocore.errors import OptionError, writing
 from isocore.extraction import Field
 from isocore.job import STDOUT, Job, Target
@@ -64,12 +65,19 @@ def check_colours(source: Field, job: Job) -> None:
 
 
 def colors_of(surface: Surface, job: Job) -> Colors | None:
-    """How the surface is coloured by a carried field; None where it carries none."""
+    """How the surface is coloured by a carried field, in its file or on the report's page; None where it is not."""
     by = job.color_by or next(iter(surface.fields), None)
-    if by is None:
+    if by is None or not job.colours_by_field:
         return None
     limits = job.color_range or range_of(magnitudes(surface.fields[by]))
     return Colors(by=by, colormap=job.colormap or "viridis", range=limits)
+
+
+def page_copy(surface: Surface, target: Target, job: Job) -> Copy | None:
+    """A copy of the surface for the report's page, with what it is coloured by; None where none is asked for."""
+    colors = colors_of(surface, job) if job.page_triangles else None
+    values = None if colors is None else magnitudes(surface.fields[colors.by])
+    return copied(surface, job.page_triangles, colour_of(target, job), values)
 
 
 def _with_colours(surface: Surface, job: Job) -> Surface:

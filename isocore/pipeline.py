@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from isocore.asked import asked_of
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
-from isocore.copies import copied
 from isocore.errors import FieldError, InputError, IsocoreError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
@@ -24,8 +23,8 @@ from isocore.outputs import (
     carried_facts,
     check_colours,
     check_pictures,
-    colour_of,
     format_warnings,
+    page_copy,
     write_ambiguities,
 )
 from isocore.pieces import check_unit, keep_pieces
@@ -132,7 +131,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     findings=named(findings, target.choice),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
-                    copy=copied(surface, job.page_triangles, colour_of(target, job)),
+                    copy=page_copy(surface, target, job),
                 )
                 del found, kept, surface, form
                 yield requirements_checked(reference.compared(run), job)

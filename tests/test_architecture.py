@@ -66,7 +66,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
     "writers": {"choices", "colormaps", "errors", "surface", "volume", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
-    | {"copies", "digits", "surface", "writers/read_back"}
+    | {"copies", "digits", "surface", "writers/colormaps", "writers/read_back"}
     | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},
@@ -76,7 +76,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "benches": NOUNS | KERNELS | {"histogram", "methods"},
     "remarks": NOUNS | {"field_facts", "histogram", "isovalue", "measurements"},
     "offset": NOUNS | {"methods/marching_cells"} | KERNELS,
-    "outputs": NOUNS | {"ambiguities", "pictures", "report/sections", "whole_file", "writers"},
+    "outputs": NOUNS | {"ambiguities", "copies", "pictures", "report/sections", "whole_file", "writers"},
     "pieces": NOUNS | KERNELS,
     "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},

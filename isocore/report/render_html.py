@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+from base64 import b64encode
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import quote
 
@@ -10,6 +13,7 @@ from isocore.report.copies_found import with_copies
 from isocore.report.keys import batch_as_dict
 from isocore.report.record import BatchReport
 from isocore.report.texts import shown_json
+from isocore.writers.colormaps import colormap
 
 #: Bytes of all copies together, unless told otherwise.
 MESH_BYTES = 16 << 20
@@ -30,6 +34,7 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES, page: Path 
             one["mesh"] = run.copy.as_dict()
         if page is not None and run.triangles and run.output != "-":
             one["link"] = _link(run.output, batch.folder, page)
+    record["colormaps"] = _tables(run.colors.colormap for run in batch.outputs if run.colors is not None)
     parts = {
         "css": _part("page.css"),
         "three": _part("three.min.js"),
@@ -38,6 +43,15 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES, page: Path 
     }
     before, *rest = _part("page.html").split("{{")
     return before + "".join(parts[name] + after for name, after in (part.split("}}", 1) for part in rest))
+
+
+def _tables(names: Iterable[str]) -> dict[str, str]:
+    """The 256 colours of each map, as base64 of their red, green and blue."""
+    found = {}
+    for name in dict.fromkeys(names):
+        with suppress(ValueError):  # of another version
+            found[name] = b64encode(colormap(name).tobytes()).decode()
+    return found
 
 
 def _link(output: str, folder: str, page: Path) -> str | None:

@@ -108,6 +108,13 @@ function againstInWords(run) {
   return `${fewer}; ${digits(ownSeconds(run))} s, marching cubes ${digits(reference.seconds)} s`;
 }
 
+function carriedInWords(run) {
+  return (run.carried ?? []).map(({ name, components, range }) => {
+    const what = components > 1 ? `${name} (${components} components), length` : name;
+    return range ? `${what} from ${digits(range[0])} to ${digits(range[1])}` : `${what}: no numbers`;
+  }).join("; ");
+}
+
 function factsOf(run) {
   const { surface, seconds } = run;
   const unit = surface?.unit ? ` ${surface.unit}` : "";
@@ -126,6 +133,7 @@ function factsOf(run) {
       `${sides}${unit}`,
       `area ${digits(surface.area)}${cubed(surface.unit, "²")}`,
       surface.volume != null && `volume ${digits(surface.volume)}${cubed(surface.unit, "³")}`) : ""],
+    ["carried", carriedInWords(run)],
     ["reference", againstInWords(run)],
     ["error", errorInWords(run)],
     ["pieces", run.pieces && `${whole(run.pieces.kept)} of ${several(run.pieces.found, "piece")} kept`],
@@ -155,7 +163,9 @@ function listRecord(run) {
   const add = (key, value) => {
     const show = key === "isovalue" || key === "range" ? precise : plain;
     if (value == null || value === "" || key.startsWith("histogram") || key === "mesh" || key === "link") return;
-    if (Array.isArray(value)) {
+    if (Array.isArray(value) && value.some((part) => part && typeof part === "object" && !Array.isArray(part))) {
+      value.forEach((part, number) => add(`${key}.${number}`, part));
+    } else if (Array.isArray(value)) {
       if (value.length) list.append(make("dt", key), make("dd", value.flat(3).map(show).join(", ")));
     } else if (typeof value === "object") {
       for (const [inner, part] of Object.entries(value)) add(`${key}.${inner}`, part);

@@ -67,8 +67,10 @@ function meshOf(run) {
   geometry.setIndex(new THREE.BufferAttribute(decode(run.mesh.triangles, steps.length < 3 * 65536 ? Uint16Array : Uint32Array), 1));
   if (run.mesh.normals) geometry.setAttribute("normal", new THREE.BufferAttribute(decode(run.mesh.normals, Int8Array), 3, true));
   else geometry.computeVertexNormals();
+  const colors = colorsOf(run);
+  if (colors) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3));
   const surface = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-    roughness: 0.5, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    vertexColors: colors !== null, roughness: 0.5, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   }));
   const wires = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ color: 0x10161d, roughness: 1, wireframe: true, transparent: true, opacity: 0.55 }));
   const made = { surface, wires, size };
@@ -77,7 +79,37 @@ function meshOf(run) {
   return made;
 }
 
+const tables = new Map(Object.entries(report.colormaps ?? {}).map(([name, text]) => [name, decode(text, Uint8Array)]));
+const isColoured = (run) => Boolean(run.mesh?.values && run.colors && tables.has(run.colors.colormap));
+
+// A colour for each vertex by what the surface carries, as light adds up; grey for what is no number. Null: one for all.
+function colorsOf(run) {
+  if (!isColoured(run)) return null;
+  const steps = decode(run.mesh.values, Uint16Array), table = tables.get(run.colors.colormap);
+  const [first, last] = run.mesh.value_range, [low, high] = run.colors.range ?? [0, 0];
+  const linear = Float32Array.from(table, (value) => (value <= 10 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4));
+  const colors = new Float32Array(3 * steps.length).fill(0.216);
+  for (let i = 0; i < steps.length; ++i) {
+    if (steps[i] === 65535) continue;
+    const value = first + (steps[i] / 65534) * (last - first);
+    const place = high > low ? Math.min(255, Math.max(0, Math.floor((256 * (value - low)) / (high - low)))) : 128;
+    for (let n = 0; n < 3; ++n) colors[3 * i + n] = linear[3 * place + n];
+  }
+  return colors;
+}
+
+// What the colours stand for: the map from its low end to its high one.
+function scaleOf({ by, colormap, range }) {
+  const item = make("li", "", "scale");
+  const table = tables.get(colormap), mark = make("i");
+  const stops = [...Array(16).keys()].map((n) => `rgb(${table.slice(51 * n, 51 * n + 3).join(" ")})`);
+  mark.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+  item.append(`${by} `, digits(range[0]), mark, digits(range[1]));
+  return item;
+}
+
 function colourOf(run, number, count) {
+  if (isColoured(run)) return "#ffffff";
   return run.mesh.colour ?? dig(run, "label.color") ?? (count > 1 ? PALETTE[number % PALETTE.length] : FIRST);
 }
 
@@ -131,6 +163,8 @@ function dress() {
 function listShown(drawable) {
   const legend = at("#legend");
   legend.replaceChildren();
+  const scales = new Map(drawable.filter((run) => isColoured(run) && run.colors.range).map((run) => [JSON.stringify(run.colors), run.colors]));
+  legend.append(...[...scales.values()].map(scaleOf));
   if (drawable.length > 1) {
     drawable.forEach((run, number) => {
       const item = make("li");
