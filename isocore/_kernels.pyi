@@ -65,6 +65,7 @@ def climb(
     spacing: tuple[float, float, float] = ...,
     measured: bool = True,
     ranges: npt.NDArray[Any] | None = None,
+    tilted: bool = False,
 ) -> ClimbedVolume: ...
 
 # sample_ranges: the lowest and highest sample of blocks of 64 x 16 x 16, by turns, for climb's `ranges`

@@ -23,15 +23,27 @@ def compare(
     max_error: float = math.inf,
     threads: int = 2,
 ) -> list[str]:
-    """What is broken, in words; nothing if all is well. Checks topology, vertices, threads, counts and the bound."""
+    """What is broken, in words; nothing if all is well. Checks topology, vertices, threads, counts and the bound.
+
+    Whether loops are cut by area or by the samples' gradient.
+    """
     asked = (volume.stored_isovalue(isovalue), volume.inside_is_below, capped)
-    reference_vertices, reference_triangles, faces, cells = _kernels.marching_cubes(volume.samples, *asked)[:4]
-    vertices, triangles, facts = _kernels.climb(volume.samples, *asked, 1, block_size, max_error)
+    marched = _kernels.marching_cubes(volume.samples, *asked)
     broken = []
-    if threads > 1:
-        again = _kernels.climb(volume.samples, *asked, threads, block_size, max_error)
-        if again[0].tobytes() != vertices.tobytes() or again[1].tobytes() != triangles.tobytes():
-            broken.append(f"{threads} threads give other bytes")
+    for tilted in (False, True):
+        climbed = _kernels.climb(volume.samples, *asked, 1, block_size, max_error, tilted=tilted)
+        broken += _broken(climbed, marched, max_error)
+        if threads > 1:
+            again = _kernels.climb(volume.samples, *asked, threads, block_size, max_error, tilted=tilted)
+            if any(again[n].tobytes() != climbed[n].tobytes() for n in (0, 1)):
+                broken.append(f"{threads} threads give other bytes")
+    return broken
+
+
+def _broken(climbed: Any, marched: Any, max_error: float) -> list[str]:
+    vertices, triangles, facts = climbed
+    reference_vertices, reference_triangles, faces, cells = marched[:4]
+    broken = []
     ours, theirs = (
         measure(Surface(*mesh)) for mesh in ((vertices, triangles), (reference_vertices, reference_triangles))
     )

@@ -1,7 +1,8 @@
 """The pictures of surfaces: one sample volume by marching cubes and by climbing, seen from the same side.
 
-python docs/pictures/scan.py [FOLDER] writes knot.png, with edges, and look.png, as a viewer shades them. They are drawn
-by what draws `--picture`; `pip install 'isocore[picture]'`.
+python docs/pictures/scan.py [FOLDER] writes knot.png, with edges, and look.png, as a viewer shades them; and cuts.png,
+flat: climbing's mesh before simplification, with loops cut by area alone and by the gradient. They are drawn by what
+draws `--picture`; `pip install 'isocore[picture]'`.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import isocore
+from isocore import _kernels
 from isocore.pictures import Pixels, draw, write_png
 from isocore.views import directions, parse_views
 
@@ -28,20 +30,28 @@ def surfaces() -> list[isocore.Surface]:
     return [isocore.extract(field, ISOVALUE, backend=backend, normals=True) for backend in ("mc", "asc")]
 
 
-def picture(edges: float) -> Pixels:
-    """(height, width, 3): marching cubes, a gap, climbing."""
+def cuts() -> list[isocore.Surface]:
+    """Climbing's mesh, without normals, so that it is shaded flat: its loops cut by area, and by the gradient."""
+    field = isocore.read(SAMPLE)
+    assert isinstance(field, isocore.Volume)
+    meshes = [_kernels.climb(field.samples, ISOVALUE, max_error=0.5, tilted=tilted) for tilted in (False, True)]
+    return [isocore.Surface(*mesh[:2]).placed(field.affine) for mesh in meshes]
+
+
+def picture(both: list[isocore.Surface], edges: float) -> Pixels:
+    """(height, width, 3): one, a gap, the other."""
     gap = np.full((SIZE[1], GAP, 3), 255, np.uint8)
-    left, right = (draw(one, directions(parse_views(VIEW), "native"), SIZE, edges=edges) for one in surfaces())
+    left, right = (draw(one, directions(parse_views(VIEW), "native"), SIZE, edges=edges) for one in both)
     return np.hstack([left, gap, right])
 
 
-PICTURES = {"knot.png": 1.1, "look.png": 0.0}
+PICTURES = {"knot.png": (surfaces, 1.1), "look.png": (surfaces, 0.0), "cuts.png": (cuts, 0.0)}
 
 
 def main(out: Path = HERE) -> None:
-    for name, edges in PICTURES.items():
+    for name, (both, edges) in PICTURES.items():
         with (out / name).open("wb") as stream:
-            write_png(stream, picture(edges))
+            write_png(stream, picture(both(), edges))
 
 
 if __name__ == "__main__":

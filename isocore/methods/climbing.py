@@ -38,6 +38,7 @@ def prepare_climbing(volume: Volume, options: Options, outlook: Outlook) -> Extr
             bound.in_world,
             volume.spacing,
             measured=simplify is None,
+            tilted=simplify is not None,
             ranges=ranges,
         )
         findings = climbing_findings(climbed.facts, bound, volume.unit)

@@ -52,7 +52,8 @@ class Case:
         """What is simplified."""
         if self.block_size == 0:
             return self.marched()
-        return _kernels.climb(self.samples, self.isovalue, False, self.capped, 1, self.block_size, self.bound)
+        asked = (self.samples, self.isovalue, False, self.capped, 1, self.block_size, self.bound)
+        return _kernels.climb(*asked, tilted=True)
 
     def simplified(self, threads: int = 1) -> Any:
         coarse, marched = self.coarse(), self.marched()

@@ -13,14 +13,15 @@
 namespace isocore::climbing {
 
 template <class Sample, class Coordinate>
-Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges) {
+Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges,
+                       const Slopes<Coordinate>& slopes) {
     if (*std::min_element(samples.dims.begin(), samples.dims.end()) < 2) {
         throw std::invalid_argument("climbing needs two samples per axis");
     }
     const SignGrid signs = classify(samples, options.isovalue, options.below, options.capped, options.threads, ranges);
     const SamplesOf<Sample> reader(samples, signs, options.isovalue);
 
-    Extraction<Coordinate> extraction(reader, signs, options);
+    Extraction<Coordinate> extraction(reader, signs, options, slopes);
     extraction.partition();
     extraction.number_and_place_vertices();
     extraction.draw();
@@ -28,9 +29,9 @@ Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const S
     return extraction.take();
 }
 
-#define ISOCORE_INSTANTIATE(Sample)                                                             \
-    template Mesh<float> climb<Sample, float>(GridView<Sample>, const Options&, const Sample*); \
-    template Mesh<double> climb<Sample, double>(GridView<Sample>, const Options&, const Sample*);
+#define ISOCORE_INSTANTIATE(Sample)                                                                    \
+    template Mesh<float> climb(GridView<Sample>, const Options&, const Sample*, const Slopes<float>&); \
+    template Mesh<double> climb(GridView<Sample>, const Options&, const Sample*, const Slopes<double>&);
 ISOCORE_FOR_EACH_SAMPLE_TYPE(ISOCORE_INSTANTIATE)
 #undef ISOCORE_INSTANTIATE
 

@@ -17,9 +17,13 @@ namespace isocore::climbing {
 // and block, and in a block the boxes of several cells before the single cells. The surface has marching cubes'
 // topology, component by component. All bytes are the same for any number of threads.
 //
+// slopes: if given, loops are cut into triangles of least area and least tilt against what it tells, else of least
+// area.
+//
 // Throws std::invalid_argument for an axis shorter than 2 or a block size that is not 1, 2, 4, 8, 16 or 32, and
 // std::length_error if there are more vertices than an int32 can number.
 template <class Sample, class Coordinate>
-Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges = nullptr);
+Mesh<Coordinate> climb(GridView<Sample> samples, const Options& options, const Sample* ranges = nullptr,
+                       const Slopes<Coordinate>& slopes = {});
 
 }  // namespace isocore::climbing

@@ -54,7 +54,7 @@ void Disks::draw_short(const DrawnSite& site, TriangleList& out, Bar& bar) {
     for (std::size_t start = 0; start < boxes.size(); start += kCount) {
         const std::size_t count = std::min(boxes.size() - start, kCount);
         fill(polygons, site, boxes.subspan(start, count));
-        polygons.triangulate(count);
+        polygons.triangulate(count, vertices_.have_directions());
         std::int32_t* vertices = out.reserve(count * polygons.kTriangles);
         for (std::size_t n = 0; n < count; ++n) {
             const auto triangles = polygons.triangles(n);
@@ -79,7 +79,9 @@ void Disks::fill(Polygons<length>& polygons, const DrawnSite& site, std::span<co
         const auto from = origin(site, boxes[n]);
         for (std::size_t e = 0; e < length; ++e) {
             set_corner(site, first + e, from, [&](const Spot& place, unsigned faces, std::int32_t vertex) {
-                polygons.set(n, static_cast<std::size_t>(ranks[e][n]), place, faces, vertex);
+                const auto corner = static_cast<std::size_t>(ranks[e][n]);
+                polygons.set(n, corner, place, faces, vertex);
+                if (vertices_.have_directions()) polygons.set_direction(n, corner, vertices_.direction(vertex));
             });
         }
     }
@@ -119,9 +121,10 @@ void Disks::draw_long(const DrawnSite& site, std::size_t box, TriangleList& out,
     for (std::size_t e = 0; e < size; ++e) {
         set_corner(site, order_[e].second, from, [&](const Spot& place, unsigned faces, std::int32_t vertex) {
             polygon_.set(e, place, faces, vertex);
+            if (vertices_.have_directions()) polygon_.set_direction(e, vertices_.direction(vertex));
         });
     }
-    const auto triangles = polygon_.triangulate();
+    const auto triangles = polygon_.triangulate(vertices_.have_directions());
     std::int32_t* vertices = out.reserve(triangles.size());
     for (const auto& triangle : triangles) {
         for (const std::size_t corner : triangle) *vertices++ = polygon_.vertex(corner);

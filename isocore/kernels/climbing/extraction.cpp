@@ -26,10 +26,12 @@ constexpr std::size_t kLateShare = 16;
 }  // namespace
 
 template <class Coordinate>
-Extraction<Coordinate>::Extraction(const SampleReader& samples, const SignGrid& signs, const Options& options)
+Extraction<Coordinate>::Extraction(const SampleReader& samples, const SignGrid& signs, const Options& options,
+                                   const Slopes<Coordinate>& slopes)
     : samples_(samples),
       signs_(signs),
       options_(options),
+      slopes_(slopes),
       bars_(lay_out_bars(signs_, options.block_size)),
       layout_(signs_, options.block_size, options.threads) {}
 
@@ -62,6 +64,16 @@ void Extraction<Coordinate>::number_and_place_vertices() {
             }
         }
     });
+    find_directions();
+}
+
+template <class Coordinate>
+void Extraction<Coordinate>::find_directions() {
+    if (!slopes_) return;
+    directions_ = slopes_(mesh_.vertices);
+    for (float& component : directions_) {
+        if (std::isnan(component)) component = 0;  // then all triangles there are equally tilted
+    }
 }
 
 template <class Coordinate>
@@ -128,6 +140,7 @@ void Extraction<Coordinate>::insert_vertices(std::vector<LateVertex> late) {
         edge.add(1, {vertex.axis, i});
         samples_.write_vertices(j, k, edge, mesh_.vertices.data() + 3 * vertex.vertex);
     }
+    find_directions();
     parallel_for(options_.threads, bars_.bars.size(), [&](std::size_t n) {
         const Bar& bar = bars_.bars[n];
         if (!bar.stale) renumber(late, {mesh_.triangles.data() + 3 * bar.first_triangle, 3 * bar.triangles});
@@ -146,7 +159,7 @@ std::size_t Extraction<Coordinate>::most_early() const {
 // first all bars are stale.
 template <class Coordinate>
 void Extraction<Coordinate>::draw_stale(const std::function<void(std::size_t, const DrawBar&)>& visit) {
-    const PlacedVertices vertices(mesh_.vertices.data());
+    const PlacedVertices vertices(mesh_.vertices.data(), slopes_ ? directions_.data() : nullptr);
     const auto make = [&] { return std::make_unique<Drawer>(samples_, signs_, layout_, options_, vertices); };
     parallel_for(options_.threads, bars_.bars.size(), make, [&](const std::unique_ptr<Drawer>& drawer, std::size_t n) {
         if (bars_.bars[n].stale) visit(n, [&](const Drawer::Put& put) { drawer->draw(bars_, n, bars_.bars[n], put); });

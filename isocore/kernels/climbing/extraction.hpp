@@ -21,7 +21,8 @@ template <class Coordinate>
 class Extraction {
   public:
     // What is passed by reference must outlive this object.
-    Extraction(const SampleReader& samples, const SignGrid& signs, const Options& options);
+    Extraction(const SampleReader& samples, const SignGrid& signs, const Options& options,
+               const Slopes<Coordinate>& slopes);
 
     // Finds the highrices of all blocks, and keeps the crossings on their edges.
     void partition();
@@ -38,6 +39,7 @@ class Extraction {
   private:
     using DrawBar = std::function<void(const Drawer::Put&)>;
 
+    void find_directions();
     void draw_stale(const std::function<void(std::size_t, const DrawBar&)>& visit);
     void insert_vertices(std::vector<LateVertex> late);
     std::size_t most_early() const;
@@ -45,9 +47,11 @@ class Extraction {
     const SampleReader& samples_;
     const SignGrid& signs_;
     const Options& options_;
+    const Slopes<Coordinate>& slopes_;  // may be empty
     Bars bars_;
     Layout layout_;
     Mesh<Coordinate> mesh_;
+    Array<float> directions_;  // what slopes_ tells of the vertices
 };
 
 }  // namespace isocore::climbing

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "common/array.hpp"
@@ -46,6 +47,11 @@ struct Facts {
     std::size_t split_again = 0;    // boxes that were drawn, broke the error bound and were halved
     Deviation in_voxels, in_world;  // in voxels, and in the unit of Options::spacing
 };
+
+// Tells where the samples fall at some vertices (x, y, z of each, in samples): unit vectors, NaN where nothing is
+// known.
+template <class Coordinate>
+using Slopes = std::function<Array<float>(const Array<Coordinate>& vertices)>;
 
 template <class Coordinate>
 struct Mesh {

@@ -17,6 +17,10 @@ Vector<Number> minus(const Vector<Number>& a, const Vector<Number>& b) {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 template <class Number>
+Vector<Number> plus(const Vector<Number>& a, const Vector<Number>& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+template <class Number>
 Vector<Number> times(const Number& factor, const Vector<Number>& a) {
     return {factor * a[0], factor * a[1], factor * a[2]};
 }

@@ -3,13 +3,24 @@
 #include <limits>
 #include <stdexcept>
 
+#include "climbing/triangles/loop_cost.hpp"
+
 namespace isocore::climbing {
 
 template <std::size_t length>
-void Polygons<length>::triangulate(std::size_t count) {
+void Polygons<length>::triangulate(std::size_t count, bool tilted) {
+    if (tilted)
+        triangulate_all<true>(count);
+    else
+        triangulate_all<false>(count);
+}
+
+template <std::size_t length>
+template <bool tilted>
+void Polygons<length>::triangulate_all(std::size_t count) {
     constexpr float kIllegal = 1e30f;  // larger than any area, and so small that the sum of a few is finite
-    std::array<std::array<Floats, length>, length> area;  // [i][j]: twice the least area of part (i, j)'s triangles
-    for (std::size_t i = 0; i + 1 < length; ++i) area[i][i + 1] = 0.0f;
+    std::array<std::array<Floats, length>, length> cost;  // [i][j]: the least of part (i, j)'s triangles
+    for (std::size_t i = 0; i + 1 < length; ++i) cost[i][i + 1] = 0.0f;
     for (std::size_t span = 2; span < length; ++span) {
         for (std::size_t i = 0; i + span < length; ++i) {
             const std::size_t j = i + span;
@@ -17,18 +28,23 @@ void Polygons<length>::triangulate(std::size_t count) {
             Floats best(std::numeric_limits<float>::infinity()), apex(0.0f);
             for (std::size_t k = i + 1; k < j; ++k) {
                 const auto normal = cross(minus(places(k), from), along);
-                const Floats tried = area[i][k] + area[k][j] + root(dot(normal, normal));
+                Floats own;
+                if constexpr (tilted)
+                    own = tilted_area(normal, falls(i, k, j));
+                else
+                    own = double_area(normal);
+                const Floats tried = cost[i][k] + cost[k][j] + own;
                 apex = choose(tried < best, Floats(static_cast<float>(k)), apex);
                 best = least(best, tried);
             }
             apex.store(apex_[i][j].data());
             const bool is_whole = span + 1 == length;
-            area[i][j] = is_whole ? best
+            cost[i][j] = is_whole ? best
                                   : choose(have_no_bit_in_common(Floats(faces_[i].data()), Floats(faces_[j].data())),
                                            best, kIllegal);
         }
     }
-    const auto found = area[0][length - 1].each();
+    const auto found = cost[0][length - 1].each();
     for (std::size_t n = 0; n < count; ++n) {
         if (!(found[n] < kIllegal)) throw std::logic_error("a loop has no legal triangulation");
     }
