@@ -40,6 +40,7 @@ def _index(path: Path, reading: Reading) -> str:
     """Writes the index of one mesh and says what it holds."""
     from isocore.cell_mesh import CellMesh
     from isocore.errors import FieldError
+    from isocore.memory import processors
     from isocore.methods.index_file import index_path, save_index
     from isocore.methods.thinning import build_index
     from isocore.readers import read
@@ -48,7 +49,7 @@ def _index(path: Path, reading: Reading) -> str:
     if not isinstance(mesh, CellMesh):
         raise FieldError(f"{path}: is a volume, whose cells need no index; index meshes only")
     start = perf_counter()
-    built = build_index(mesh)
+    built = build_index(mesh, processors())
     seconds = perf_counter() - start
     target = index_path(path)
     save_index(target, built, mesh)

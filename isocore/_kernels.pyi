@@ -231,9 +231,15 @@ class BuiltIndex(NamedTuple):
     tets: IndexPart
     hexes: IndexPart
     original: _Int32
-    edges: int
 
-def build_index(points: _Float64, tets: _Int32, hexes: _Int32, values: _Real) -> BuiltIndex: ...
+def build_index(
+    points: _Float64,
+    tets: _Int32,
+    hexes: _Int32,
+    values: _Real,
+    threads: int = 1,
+    cells_per_block: int = 131072,
+) -> BuiltIndex: ...
 
 class WalkedMesh(NamedTuple):
     vertices: _Real  # the mesh's space; float32 if `single`
@@ -252,8 +258,8 @@ _PartArrays = tuple[_Int32, _Int32, _Float64, _Float64]  # records, skeleton, lo
 class Index:
     """An index and its mesh, checked once (ValueError), then ready for one isovalue after the other.
 
-    points (p, 3) and values (p,) as the index numbers them; original (p,): their ids in the mesh; edges: how many edge
-    ids the records name. Keeps the arrays alive and copies none. Calls from several threads take turns.
+    points (p, 3) and values (p,) as the index numbers them; original (p,): their ids in the mesh. Keeps the arrays
+    alive and copies none.
     built: the arrays are build_index's own and are taken unchecked; others lead out of bounds.
     """
 
@@ -264,7 +270,6 @@ class Index:
         tets: _PartArrays,
         hexes: _PartArrays,
         original: _Int32,
-        edges: int,
         built: bool = False,
     ) -> None: ...
     def propagate(

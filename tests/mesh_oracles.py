@@ -29,7 +29,7 @@ def triangle_set(
 
 
 class Glued:
-    """A mesh of one kind of cell, glued along the faces that exactly two cells share.
+    """A mesh of one kind of cell, glued along the faces that exactly two cells share, and at its points.
 
     simplices[d][cell]: the numbers of a cell's vertices (d = 0), edges (1) and faces (2) in the glued mesh.
     boundary[d][n]: the (d - 1)-dimensional elements around element n, for d = 1, 2.
@@ -63,14 +63,18 @@ class Glued:
             for d, kind in enumerate(parts):
                 named = []
                 for part in kind:
-                    root = self._find((number, part))
+                    root = self._named(number, part)
                     named.append(numbers[d].setdefault(root, len(numbers[d])))
                 self.simplices[d].append(set(named))
                 if d == 0:
                     self.vertices.append(named)
                 for part, name in zip(kind, named, strict=True) if d else ():
                     lower = [p for p in parts[d - 1] if p < part]
-                    self.boundary[d][name] = {numbers[d - 1][self._find((number, p))] for p in lower}
+                    self.boundary[d][name] = {numbers[d - 1][self._named(number, p)] for p in lower}
+
+    def _named(self, cell: int, part: frozenset[int]) -> tuple[int, frozenset[int]]:
+        """A point is one vertex, whichever cells meet there; edges and faces are those that gluing makes one."""
+        return (-1, part) if len(part) == 1 else self._find((cell, part))
 
     def _find(self, item: tuple[int, frozenset[int]]) -> tuple[int, frozenset[int]]:
         while item in self.parent:

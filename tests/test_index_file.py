@@ -152,13 +152,12 @@ def test_a_header_with_one_other_letter_is_thinned_anew(path: Path, mesh: CellMe
 def test_numbers_out_of_bounds_are_refused_whatever_the_checksum_says(path: Path, mesh: CellMesh) -> None:
     """Every number of the header, as a damaged or a hostile file may have it."""
     whole = path.read_bytes()
-    for key in ("edges", "points"):
-        for number in (-1, 3, 2**32, 2**63, 1.5, True, None, "98", [], 10**400):
-            _forged(path, lambda header, arrays, key=key, number=number: header.update({key: number}))
-            assert "is damaged" in _same_surface(path, mesh)[0], (key, number)
-            path.write_bytes(whole)
+    for number in (-1, 3, 2**32, 2**63, 1.5, True, None, "98", [], 10**400):
+        _forged(path, lambda header, arrays, number=number: header.update(points=number))
+        assert "is damaged" in _same_surface(path, mesh)[0], number
+        path.write_bytes(whole)
     for key in ("extrema", "classes", "crowded_faces", "crowded_cells", "collapsed_cells", "collapsed_cell", "arrays"):
-        for number in (-2, 2**40, [1, 2], None, {"records": [1, 14]}):
+        for number in (-2, 2**40, [1, 2], None, {"records": [1, 8]}):
             _forged(path, lambda header, arrays, key=key, number=number: header["tets"].update({key: number}))
             assert "is damaged" in _same_surface(path, mesh)[0], (key, number)
             path.write_bytes(whole)
@@ -182,15 +181,13 @@ def _swapped(array: Any) -> None:
         lambda header, arrays: arrays["original"].__setitem__(3, 10**6),
         lambda header, arrays: arrays["tets records"].__setitem__((4, 2), 10**6),
         lambda header, arrays: arrays["tets records"].__setitem__((4, 6), 10**6),
-        lambda header, arrays: arrays["tets records"].__setitem__((4, 9), 10**6),
-        lambda header, arrays: arrays["tets records"].__setitem__((slice(None), slice(8, 14)), 0),
         lambda header, arrays: _moved_corner(arrays),
         lambda header, arrays: arrays["tets skeleton"].__setitem__(0, -1),
         lambda header, arrays: arrays["tets skeleton"].__setitem__(1, arrays["tets skeleton"][0]),
         lambda header, arrays: arrays["tets low"].__setitem__(0, np.nan),
         lambda header, arrays: arrays["tets high"].__setitem__(slice(None), -1e9),
         lambda header, arrays: _swapped(arrays["tets low"]),
-        lambda header, arrays: header["tets"]["arrays"].update(records=[14, len(arrays["tets records"])]),
+        lambda header, arrays: header["tets"]["arrays"].update(records=[8, len(arrays["tets records"])]),
         lambda header, arrays: arrays.update(original=arrays["original"][:-1]),
     ],
 )
@@ -198,46 +195,3 @@ def test_a_forged_index_is_thinned_anew(path: Path, mesh: CellMesh, change: Any)
     """Ids that lead nowhere, other shapes under the same bytes, a skeleton of other values: never a wrong surface."""
     _forged(path, change)
     assert "thinned anew" in _same_surface(path, mesh)[0]
-
-
-def test_an_index_of_other_edges_is_thinned_anew(path: Path, mesh: CellMesh) -> None:
-    """Every edge has an owner, but lies elsewhere."""
-
-    def exchange(header: dict[str, Any], arrays: dict[str, Any]) -> None:
-        edges = arrays["tets records"][:, 8:]
-        numbers = np.where(edges < 0, ~edges, edges)
-        turned = header["edges"] - 1 - numbers
-        arrays["tets records"][:, 8:] = np.where(edges < 0, ~turned, numbers)
-
-    _forged(path, exchange)
-    assert any("thinned anew" in line for line in _same_surface(path, mesh))
-
-
-def test_an_index_whose_owners_are_never_visited_is_thinned_anew(tmp_path: Path) -> None:
-    """A tetrahedron that touches six others at its edges, which own them, and are not found: seen where it is drawn."""
-    middle = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    ends = [(a, b) for a in range(4) for b in range(a)]
-    beside = np.concatenate([np.add([[5, n, 0], [5, n, 1]], middle[a] + middle[b]) for n, (a, b) in enumerate(ends)])
-    tets = np.array([(0, 1, 2, 3), *((a, b, 4 + 2 * n, 5 + 2 * n) for n, (a, b) in enumerate(ends))], np.int32)
-    mesh = CellMesh(np.concatenate([middle, beside]), tets, np.empty((0, 8), np.int32), np.arange(16.0))
-    path = index_path(tmp_path / "mesh.vtu")
-    save_index(path, build_index(mesh), mesh)
-
-    def leave_the_middle_alone(header: dict[str, Any], arrays: dict[str, Any]) -> None:
-        original, records = arrays["original"], arrays["tets records"]
-        (central,) = np.flatnonzero((original[records[:, :4]] < 4).all(axis=1))
-        edges = np.where(records[:, 8:] < 0, ~records[:, 8:], records[:, 8:])
-        first = {int(edge): cell for cell in range(len(edges)) for edge in edges[cell] if cell != central}
-        for cell, row in enumerate(edges):
-            records[cell, 8:] = [~edge if first.get(int(edge), central) == cell else edge for edge in row]
-        values = mesh.values[original[records[central, :4]]]
-        arrays["tets skeleton"] = np.array([central], "<i4")
-        arrays["tets low"], arrays["tets high"] = np.array([values.min()]), np.array([values.max()])
-        header["tets"]["arrays"].update(skeleton=[1], low=[1], high=[1])
-
-    _forged(path, leave_the_middle_alone)
-    load_index(path, mesh)
-    found = prepare_thinning(mesh, Options(), Outlook(index=path))(1.5)
-    right = prepare_thinning(mesh, Options(), Outlook())(1.5)
-    assert "is wrong (the owner of a crossed edge" in found.warnings[0] and "thinned anew" in found.warnings[0]
-    assert np.array_equal(found.surface.triangles, right.surface.triangles) and len(right.surface.triangles)

@@ -25,7 +25,7 @@ from isocore.errors import InputError, reading
 from isocore.methods.mesh_index import IndexPart, MeshIndex
 
 SUFFIX = ".isoindex"
-_MAGIC = b"isocore thinning index 3\n"
+_MAGIC = b"isocore thinning index 4\n"
 _LONGEST_HEADER = 1 << 16
 _ARRAYS = {"records": "<i4", "skeleton": "<i4", "low": "<f8", "high": "<f8"}
 #: How a refusal of an index ends.
@@ -50,7 +50,7 @@ def save_index(path: Path, index: MeshIndex, mesh: CellMesh) -> None:
     """Write the index whole or not at all."""
     from isocore.whole_file import whole_file
 
-    header: dict[str, Any] = {"mesh": mesh_hash(mesh), "field": mesh.field_name, "edges": index.edges}
+    header: dict[str, Any] = {"mesh": mesh_hash(mesh), "field": mesh.field_name}
     arrays: list[npt.NDArray[Any]] = []
     for kind, part in (("tets", index.tets), ("hexes", index.hexes)):
         numbers = {f.name: getattr(part, f.name) for f in fields(part) if f.name not in _ARRAYS}
@@ -104,7 +104,6 @@ def _index(file: BinaryIO, header: dict[str, Any], mesh: CellMesh) -> MeshIndex:
     """The arrays behind a header that was made from `mesh`; ValueError where any number cannot be what it should."""
     tets, hexes = _shapes(header["tets"], mesh.tets), _shapes(header["hexes"], mesh.hexes)
     points = _count(header["points"], len(mesh.points))
-    edges = _count(header["edges"], 6 * len(mesh.tets) + 12 * len(mesh.hexes))
     wanted = [(name, shape) for part in (tets, hexes) for name, shape in part.items()]
     wanted_bytes = 4 * points + sum(math.prod(shape) * np.dtype(_ARRAYS[name]).itemsize for name, shape in wanted)
     held_bytes = Path(file.name).stat().st_size - file.tell()
@@ -120,7 +119,7 @@ def _index(file: BinaryIO, header: dict[str, Any], mesh: CellMesh) -> MeshIndex:
     for kind, cells, arrays in (("tets", mesh.tets, found[:4]), ("hexes", mesh.hexes, found[4:])):
         named: dict[str, Any] = dict(zip(_ARRAYS, arrays, strict=True))
         parts.append(IndexPart(**named, **_numbers(header[kind], cells, len(mesh.points))))
-    return MeshIndex(parts[0], parts[1], original, edges)
+    return MeshIndex(parts[0], parts[1], original)
 
 
 def is_of(index: MeshIndex, mesh: CellMesh) -> bool:
@@ -156,7 +155,7 @@ def _sum_of(mixed: npt.NDArray[np.uint64], cells: npt.NDArray[np.int32]) -> int:
 
 def _shapes(part: dict[str, Any], cells: npt.NDArray[np.int32]) -> dict[str, tuple[int, ...]]:
     """The shapes of the arrays of all `cells` (m, k) of one kind, whatever the file says of them."""
-    columns = {4: 14, 8: 26}[cells.shape[1]]
+    columns = {4: 8, 8: 14}[cells.shape[1]]
     skeleton = _count(part["arrays"]["skeleton"][0], len(cells))
     shapes = {"records": (len(cells), columns), "skeleton": (skeleton,), "low": (skeleton,), "high": (skeleton,)}
     if part["arrays"] != {name: list(shape) for name, shape in shapes.items()}:

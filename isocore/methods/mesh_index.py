@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 @dataclass(frozen=True, slots=True, eq=False)
 class IndexPart:
-    """The index of all cells of one kind; kernels/thinning/mesh/thinning.hpp says what a record holds.
+    """The index of all cells of one kind; kernels/thinning/mesh/records.hpp says what a record holds.
 
-    records: (m, 14) int32 for tetrahedra, (m, 26) for hexahedra.
+    records: (m, 8) int32 for tetrahedra, (m, 14) for hexahedra.
     skeleton: (s,) int32, cells; low, high: (s,) float64, low ascending: the isovalues a skeleton cell holds.
     extrema: vertices that are a local minimum or maximum.
     classes: skeleton cells by the number of their face neighbours among the skeleton, from 0 to 6.
@@ -36,14 +36,12 @@ class IndexPart:
 class MeshIndex:
     """What thinning knows of one field on one mesh.
 
-    original: (p,) int32, the mesh's id of every point that the records name.
-    edges: how many edge ids they name.
+    original: (p,) int32, the mesh's id of every point as the records number them.
     """
 
     tets: IndexPart
     hexes: IndexPart
     original: npt.NDArray[np.int32]
-    edges: int
 
     @property
     def parts(self) -> tuple[IndexPart, IndexPart]:

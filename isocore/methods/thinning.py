@@ -21,10 +21,13 @@ from isocore.methods.mesh_index import IndexPart, MeshIndex
 from isocore.methods.simplifying import mesh_simplifier
 
 
-def build_index(mesh: CellMesh) -> MeshIndex:
-    """Thin the mesh; linear in its cells."""
-    built = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values)
-    return MeshIndex(IndexPart(*built.tets), IndexPart(*built.hexes), built.original, built.edges)
+def build_index(mesh: CellMesh, threads: int = 1, *, cells_per_block: int = 1 << 17) -> MeshIndex:
+    """Thin the mesh; linear in its cells, and the same for any number of threads.
+
+    cells_per_block: blocks of cells are thinned apart, then what remains of them; this changes the skeleton only.
+    """
+    built = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values, threads, cells_per_block)
+    return MeshIndex(IndexPart(*built.tets), IndexPart(*built.hexes), built.original)
 
 
 def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extract:
@@ -36,23 +39,12 @@ def prepare_thinning(field: Field, options: Options, outlook: Outlook) -> Extrac
 
 def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract:
     """Take the index from `outlook.index` if it matches, else thin now; then walk for every isovalue."""
-    index, ready, warnings = _index_of(mesh, outlook)
+    index, ready, warnings = _index_of(mesh, outlook, options.threads)
     simplify = mesh_simplifier(mesh, options)
-    with_edges = needs_edges(mesh, options, simplify)
-    single, foreign = single_precision(mesh), outlook.index is not None
+    with_edges, single = needs_edges(mesh, options, simplify), single_precision(mesh)
 
     def extract(isovalue: float) -> Extraction:
-        nonlocal index, ready, warnings, foreign
-        try:
-            walked = ready.propagate(isovalue, options.threads, single, with_edges)
-        except ValueError as error:  # the index beside the mesh has no damage, but was not made by us
-            if not foreign:
-                raise
-            foreign = False
-            warnings = (f"{outlook.index}: is wrong ({error}); {AGAIN}; thinned anew",)
-            index = build_index(mesh)
-            ready = ready_index(mesh, index, built=True)
-            walked = ready.propagate(isovalue, options.threads, single, with_edges)
+        walked = ready.propagate(isovalue, options.threads, single, with_edges)
         search = Search(
             cells=mesh.cells,
             extrema=index.extrema,
@@ -69,7 +61,9 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
     return extract
 
 
-def _index_of(mesh: CellMesh, outlook: Outlook) -> tuple[MeshIndex, _kernels.Index, tuple[str, ...]]:
+def _index_of(
+    mesh: CellMesh, outlook: Outlook, threads: int
+) -> tuple[MeshIndex, _kernels.Index, tuple[str, ...]]:
     """The index beside the mesh if it matches, else a new one; and what to tell the user about that choice."""
     warnings = []
     if outlook.index is not None:
@@ -78,7 +72,7 @@ def _index_of(mesh: CellMesh, outlook: Outlook) -> tuple[MeshIndex, _kernels.Ind
             return index, _checked(outlook.index, mesh, index), ()
         except IsocoreError as error:
             warnings.append(f"{error}; thinned anew")
-    index = build_index(mesh)
+    index = build_index(mesh, threads)
     if not outlook.named:
         return index, ready_index(mesh, index, built=True), tuple(warnings)
     if outlook.isovalues == 1:
@@ -134,6 +128,5 @@ def ready_index(mesh: CellMesh, index: MeshIndex, *, built: bool = False) -> _ke
         tets=tets,
         hexes=hexes,
         original=index.original,
-        edges=index.edges,
         built=built,
     )

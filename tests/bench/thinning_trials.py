@@ -32,6 +32,8 @@ from isocore.cell_mesh import CellMesh
 from isocore.methods.thinning import build_index, ready_index
 from isocore.readers.cell_splitting import split_cells
 
+#: Cells per block: as ever, and so few that small meshes have many blocks.
+BLOCKS = (1 << 17, 8, 24, 100)
 REAL = Path(__file__).parents[3] / "shared" / "data" / "meshes"
 
 
@@ -40,7 +42,7 @@ def components(vertices: np.ndarray, triangles: np.ndarray) -> int:
 
 
 def compare(mesh: CellMesh, limit: int, count: Tally) -> None:
-    ready = ready_index(mesh, build_index(mesh))
+    ready = ready_index(mesh, build_index(mesh, cells_per_block=BLOCKS[count.trials % len(BLOCKS)]))
     for isovalue in meshes.isovalues(mesh, limit):
         vertices, triangles, _, visited, _ = ready.propagate(isovalue)
         all_vertices, all_triangles, intersected, _ = _kernels.marching_cells(

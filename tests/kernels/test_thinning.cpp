@@ -67,20 +67,19 @@ void walks_find_what_a_full_scan_finds() {
             box.hexes.clear();
         const mesh::Field<double> field{box.points.data(), box.values.data(), box.values.size()};
         const std::size_t tets = box.tets.size() / 4, hexes = box.hexes.size() / 8;
-        thinning::Index index = thinning::build(field, {box.tets.data(), box.hexes.data(), tets, hexes});
+        thinning::Index index = thinning::build(field, {box.tets.data(), box.hexes.data(), tets, hexes},
+                                                {1 + trial % 2, trial % 3 == 0 ? 8u : 1u << 17});
         std::vector<double> points, values;
         for (const std::int32_t point : index.points) {
             points.insert(points.end(), field.point(point), field.point(point) + 3);
             values.push_back(field.value(point));
         }
-        std::vector<std::int32_t> vertex_of_edge(index.edge_count);
         const auto view = [](const thinning::Part& part, std::size_t cells) {
             return thinning::PartView{
                 part.records.data(), part.skeleton.data(), part.low.data(), part.high.data(), cells,
                 part.skeleton.size()};
         };
-        const thinning::IndexView at{view(index.tets, tets), view(index.hexes, hexes), index.points.data(),
-                                     vertex_of_edge.data()};
+        const thinning::IndexView at{view(index.tets, tets), view(index.hexes, hexes), index.points.data()};
         for (const double isovalue : {-1.0, 0.0, 0.5, 1.0, 2.0, 3.5, 4.0, 9.0}) {
             const auto walked = thinning::propagate<double>(
                 mesh::Field<double>{points.data(), values.data(), values.size()}, at, isovalue, 1 + trial % 3);

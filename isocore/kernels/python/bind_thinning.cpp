@@ -3,8 +3,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
+#include <algorithm>
 #include <cstdint>
-#include <mutex>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -14,7 +14,6 @@
 #include "python/bindings.hpp"
 #include "python/named_tuple.hpp"
 #include "thinning/mesh/thinning.hpp"
-#include "thinning/zeroed.hpp"
 
 namespace isocore::python {
 namespace {
@@ -37,19 +36,21 @@ void bind_build(nb::module_& module, const NamedTuple& index_part, const NamedTu
     module.def(
         "build_index",
         [=](const Rows<double, 3>& points, const Rows<std::int32_t, 4>& tets, const Rows<std::int32_t, 8>& hexes,
-            const Vector<Value>& values) {
+            const Vector<Value>& values, int threads, std::size_t cells_per_block) {
             const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
             thinning::Index index;
             {
                 const nb::gil_scoped_release unlocked;
-                index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)});
+                index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)},
+                                        {threads, std::max<std::size_t>(cells_per_block, 1)});
             }
             return built_index(part_to_numpy(std::move(index.tets), kTetRecord, index_part),
                                part_to_numpy(std::move(index.hexes), kHexRecord, index_part),
-                               to_numpy(std::move(index.points)), index.edge_count);
+                               to_numpy(std::move(index.points)));
         },
         nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
-        nb::arg("values").noconvert());
+        nb::arg("values").noconvert(), nb::arg("threads") = 1,
+        nb::arg("cells_per_block") = thinning::Work{}.cells_per_block);
 }
 
 // Records, skeleton, low and high ends of all cells of one kind.
@@ -66,36 +67,33 @@ thinning::PartView view(const PartArrays<columns>& part) {
     return {records.data(), skeleton.data(), low.data(), high.data(), records.shape(0), skeleton.shape(0)};
 }
 
-// Keeps the arrays it was made from alive, and copies none of them. Calls number their vertices in the same scratch
-// memory, so they take turns.
+// Keeps the arrays it was made from alive, and copies none of them.
 class Index {
   public:
     using Values = std::variant<Vector<float>, Vector<double>>;
 
     Index(Rows<double, 3> points, Values values, PartArrays<kTetRecord> tets, PartArrays<kHexRecord> hexes,
-          Vector<std::int32_t> original, std::size_t edges, bool built)
+          Vector<std::int32_t> original, bool built)
         : points_(std::move(points)),
           values_(std::move(values)),
           tets_(std::move(tets)),
           hexes_(std::move(hexes)),
           original_(std::move(original)),
-          vertex_of_edge_(edges),
-          view_{view<kTetRecord>(tets_), view<kHexRecord>(hexes_), original_.data(), vertex_of_edge_.data()} {
+          view_{view<kTetRecord>(tets_), view<kHexRecord>(hexes_), original_.data()} {
         const std::size_t count = points_.shape(0);
         if (original_.shape(0) != count || std::visit([](const auto& v) { return v.shape(0); }, values_) != count) {
             throw std::invalid_argument("there must be one value and one original id per point");
         }
         if (built) return;
         const nb::gil_scoped_release unlocked;
-        thinning::check_index(view_, count, edges);
+        thinning::check_index(view_, count);
     }
 
   private:
-    // Calls work(field) for the mesh with its values, without the GIL and alone.
+    // Calls work(field) for the mesh with its values, without the GIL.
     template <class Work>
-    auto with_field(const Work& work) {
+    auto with_field(const Work& work) const {
         const nb::gil_scoped_release unlocked;
-        const std::lock_guard<std::mutex> alone(one_at_a_time_);
         return std::visit(
             [&]<class Value>(const Vector<Value>& values) {
                 return work(mesh::Field<std::remove_const_t<Value>>{points_.data(), values.data(), values.shape(0)});
@@ -104,12 +102,13 @@ class Index {
     }
 
   public:
-    nb::object propagate(double isovalue, int threads, bool single, bool with_edges, const NamedTuple& walked_mesh) {
+    nb::object propagate(double isovalue, int threads, bool single, bool with_edges,
+                         const NamedTuple& walked_mesh) const {
         return single ? propagate_to<float>(isovalue, threads, with_edges, walked_mesh)
                       : propagate_to<double>(isovalue, threads, with_edges, walked_mesh);
     }
 
-    nb::object walk(double isovalue, const NamedTuple& visited_cells) {
+    nb::object walk(double isovalue, const NamedTuple& visited_cells) const {
         thinning::Visited visited =
             with_field([&](const auto& field) { return thinning::walk(field, view_, isovalue); });
         return visited_cells(to_numpy(std::move(visited.tets)), to_numpy(std::move(visited.hexes)), visited.seeds);
@@ -117,7 +116,7 @@ class Index {
 
   private:
     template <class Coordinate>
-    nb::object propagate_to(double isovalue, int threads, bool with_edges, const NamedTuple& walked_mesh) {
+    nb::object propagate_to(double isovalue, int threads, bool with_edges, const NamedTuple& walked_mesh) const {
         thinning::Mesh<Coordinate> mesh = with_field([&](const auto& field) {
             return thinning::propagate<Coordinate>(field, view_, isovalue, threads, with_edges);
         });
@@ -130,9 +129,7 @@ class Index {
     PartArrays<kTetRecord> tets_;
     PartArrays<kHexRecord> hexes_;
     Vector<std::int32_t> original_;
-    thinning::Zeroed vertex_of_edge_;
     thinning::IndexView view_;
-    std::mutex one_at_a_time_;
 };
 
 }  // namespace
@@ -142,7 +139,7 @@ void bind_thinning(nb::module_& module) {
     const NamedTuple index_part(module, "IndexPart",
                                 {"records", "skeleton", "low", "high", "extrema", "classes", "crowded_faces",
                                  "crowded_cells", "collapsed_cells", "collapsed_cell"});
-    const NamedTuple built_index(module, "BuiltIndex", {"tets", "hexes", "original", "edges"});
+    const NamedTuple built_index(module, "BuiltIndex", {"tets", "hexes", "original"});
     bind_build<float>(module, index_part, built_index);
     bind_build<double>(module, index_part, built_index);
 
@@ -150,17 +147,17 @@ void bind_thinning(nb::module_& module) {
     const NamedTuple visited_cells(module, "VisitedCells", {"tets", "hexes", "seeds"});
     nb::class_<Index>(module, "Index")
         .def(nb::init<Rows<double, 3>, Index::Values, PartArrays<kTetRecord>, PartArrays<kHexRecord>,
-                      Vector<std::int32_t>, std::size_t, bool>(),
+                      Vector<std::int32_t>, bool>(),
              arg("points").noconvert(), arg("values").noconvert(), arg("tets").noconvert(), arg("hexes").noconvert(),
-             arg("original").noconvert(), arg("edges"), arg("built") = false)
+             arg("original").noconvert(), arg("built") = false)
         .def(
             "propagate",
-            [=](Index& index, double isovalue, int threads, bool single, bool with_edges) {
+            [=](const Index& index, double isovalue, int threads, bool single, bool with_edges) {
                 return index.propagate(isovalue, threads, single, with_edges, walked_mesh);
             },
             arg("isovalue"), arg("threads") = 1, arg("single") = false, arg("with_edges") = false)
         .def(
-            "walk", [=](Index& index, double isovalue) { return index.walk(isovalue, visited_cells); },
+            "walk", [=](const Index& index, double isovalue) { return index.walk(isovalue, visited_cells); },
             arg("isovalue"));
 }
 

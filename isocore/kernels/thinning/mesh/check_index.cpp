@@ -29,32 +29,6 @@ bool twins_exist(const int32_t* twins, size_t count, size_t all) {
     return std::all_of(twins, twins + count, [=](int32_t twin) { return twin < 0 || static_cast<size_t>(twin) < all; });
 }
 
-// What is known of an edge: nothing (0), or a hash of its two points, and in the lowest bit whether it has an owner.
-using EdgeNotes = std::vector<std::uint32_t>;
-
-std::uint32_t hash_of_ends(int32_t a, int32_t b) {
-    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
-                        high = static_cast<std::uint32_t>(std::max(a, b));
-    return static_cast<std::uint32_t>((high << 32 | low) * 0x9E3779B97F4A7C15u >> 32) | 2u;
-}
-
-// Notes the edges of a record, and those that it owns (their ids are negated). False if an edge does not exist, is
-// owned already, or lies between other points than before.
-template <class Cell>
-bool note_edges(const int32_t* corners, const int32_t* edges, EdgeNotes& notes) {
-    for (size_t n = 0; n < Cell::kEdges; ++n) {
-        const auto edge = static_cast<size_t>(edges[n] < 0 ? ~edges[n] : edges[n]);
-        if (edge >= notes.size()) return false;
-        const std::uint32_t ends =
-            hash_of_ends(corners[Cell::kShape.ends[n][0]], corners[Cell::kShape.ends[n][1]]) & ~1u;
-        std::uint32_t& note = notes[edge];
-        if (note != 0 && (note & ~1u) != ends) return false;
-        if (edges[n] < 0 && (note & 1u) != 0) return false;
-        note |= ends | static_cast<std::uint32_t>(edges[n] < 0);
-    }
-    return true;
-}
-
 // The same for the same corners in any order, and hardly ever for others.
 template <class Cell>
 std::uint64_t hash_of_face(const int32_t* corners, size_t face) {
@@ -83,15 +57,12 @@ bool glued_both_ways(const PartView& part, size_t cell) {
 }
 
 template <class Cell>
-void check_part(const PartView& part, size_t points, EdgeNotes& notes) {
+void check_part(const PartView& part, size_t points) {
     for (size_t cell = 0; cell < part.cells; ++cell) {
-        const int32_t *corners = part.records + kRecord<Cell> * cell, *twins = corners + Cell::kCorners,
-                      *edges = twins + Cell::kFaces;
+        const int32_t *corners = part.records + kRecord<Cell> * cell, *twins = corners + Cell::kCorners;
         require(all_below(corners, Cell::kCorners, points), "a record names a point that does not exist");
         require(twins_exist(twins, Cell::kFaces, Cell::kFaces * part.cells),
                 "a record names a cell that does not exist");
-        require(note_edges<Cell>(corners, edges, notes),
-                "a record names an edge that does not exist, has other ends or has two owners");
     }
     for (size_t cell = 0; cell < part.cells; ++cell) {
         require(glued_both_ways<Cell>(part, cell), "a record is glued to a cell that is not glued to it");
@@ -102,12 +73,9 @@ void check_part(const PartView& part, size_t points, EdgeNotes& notes) {
 
 }  // namespace
 
-void check_index(const IndexView& index, size_t points, size_t edges) {
-    EdgeNotes notes(edges);
-    check_part<mesh::Tet>(index.tets, points, notes);
-    check_part<mesh::Hex>(index.hexes, points, notes);
-    require(std::all_of(notes.begin(), notes.end(), [](std::uint32_t note) { return (note & 1u) != 0; }),
-            "an edge has no owner");
+void check_index(const IndexView& index, size_t points) {
+    check_part<mesh::Tet>(index.tets, points);
+    check_part<mesh::Hex>(index.hexes, points);
 }
 
 }  // namespace isocore::thinning

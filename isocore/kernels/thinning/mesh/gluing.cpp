@@ -1,302 +1,294 @@
-// gluing.cpp - Adjacency by a bucket sort of faces, then vertex and edge copies by walking around them. The guarantee
-// is proved for the mesh glued along faces (docs/proofs/thinning.md, sections 1 and 2), which is why there are copies.
+// gluing.cpp - Cells in order, and which of their faces are the same. A face belongs to its lowest point, and so do the
+// cells: most faces of a cell have the point that the cell has, and are compared where the cells lie; only the others,
+// one of a tetrahedron's four and three of a hexahedron's six, have to be sent to another point. Points are handled in
+// ranges, few enough that all that is known of them stays in the cache.
 #include "thinning/mesh/gluing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
-#include <vector>
+
+#include "common/large_pages.hpp"
+#include "common/parallel.hpp"
+#include "thinning/mesh/faces.hpp"
 
 namespace isocore::thinning {
 namespace {
 
 using std::int32_t;
 using std::size_t;
+using std::uint32_t;
 
-// A face by its points: the lowest is the bucket it is sorted into, the others tell it from the rest of the bucket.
-struct Face {
-    std::uint64_t next;  // triangle: the middle and the highest point; quadrilateral: the opposite and one neighbour
-    std::uint32_t last;  // the other neighbour, or 0 of a triangle
-    int32_t place;       // kFaces * cell + face
-    bool same_points(const Face& other) const { return next == other.next && last == other.last; }
-    bool operator<(const Face& other) const {
-        if (next != other.next) return next < other.next;
-        return last != other.last ? last < other.last : place < other.place;
+constexpr size_t kChunk = std::size_t{1} << 16, kCellsPerRange = 1024, kMostRanges = 4096;
+
+// Ranges of as many points each; the last may have fewer.
+struct Ranges {
+    size_t points, count;
+    unsigned shift = 0;
+
+    Ranges(size_t points_there, size_t cells) : points(points_there) {
+        const size_t wanted = std::clamp<size_t>(cells / kCellsPerRange, 1, kMostRanges);
+        while ((points >> shift) + 1 > wanted) ++shift;
+        count = (points >> shift) + 1;
     }
+    size_t of(int32_t point) const { return static_cast<size_t>(point) >> shift; }
+    int32_t first(size_t range) const { return static_cast<int32_t>(std::min(points, range << shift)); }
+    size_t size(size_t range) const { return static_cast<size_t>(first(range + 1) - first(range)); }
 };
 
-void order(int32_t& a, int32_t& b) {
-    if (b < a) std::swap(a, b);
-}
-
-// The points of a face: the lowest, then for a triangle the others ascending, for a quadrilateral the opposite one and
-// its two neighbours ascending.
-std::array<int32_t, 3> named_points(mesh::Tet, const int32_t* ids, size_t face) {
-    std::array<int32_t, 3> points;
-    for (size_t n = 0; n < 3; ++n) points[n] = ids[n + (n >= face)];
-    order(points[0], points[1]);
-    order(points[1], points[2]);
-    order(points[0], points[1]);
-    return points;
-}
-
-std::array<int32_t, 4> named_points(mesh::Hex, const int32_t* ids, size_t face) {
-    const auto ring = cube::face_ring(static_cast<int>(face));
-    const auto point = [&](size_t n) { return ids[ring[n & 3]]; };
-    size_t low = 0;
-    for (size_t n = 1; n < 4; ++n) low = point(n) < point(low) ? n : low;
-    std::array<int32_t, 4> points{point(low), point(low + 2), point(low + 1), point(low + 3)};
-    order(points[2], points[3]);
-    return points;
-}
-
-template <class Cell>
-int32_t lowest_point(const int32_t* ids, size_t face) {
-    int32_t low = std::numeric_limits<int32_t>::max();
-    for (mesh::Mask left = Cell::kShape.face_corners[face]; left != 0; left &= left - 1)
-        low = std::min(low, ids[std::countr_zero(left)]);
-    return low;
-}
-
-template <class Cell>
-bool collapsed(const int32_t* ids) {
-    for (size_t a = 0; a < Cell::kCorners; ++a) {
-        for (size_t b = a + 1; b < Cell::kCorners; ++b) {
-            if (ids[a] == ids[b]) return true;
-        }
+// A stable sort into ranges, chunk by chunk: for_each(chunk, add) calls add(range, item) for the chunk's items, twice.
+template <class Item, class ForEach>
+Array<Item> sorted_into(const Ranges& ranges, size_t chunks, std::vector<uint32_t>& start, int threads,
+                        const ForEach& for_each) {
+    std::vector<std::vector<uint32_t>> places(chunks);
+    parallel_for(threads, chunks, [&](size_t chunk) {
+        places[chunk].resize(ranges.count);
+        uint32_t* count = places[chunk].data();
+        for_each(chunk, [=](size_t range, const auto&) { ++count[range]; });
+    });
+    uint32_t next = 0;
+    start.clear();
+    for (size_t range = 0; range < ranges.count; ++range) {
+        start.push_back(next);
+        for (auto& of_chunk : places) next += std::exchange(of_chunk[range], next);
     }
-    return false;
+    start.push_back(next);
+    auto items = large_array<Item>(next);
+    parallel_for(threads, chunks, [&](size_t chunk) {
+        uint32_t* place = places[chunk].data();
+        Item* out = items.data();
+        for_each(chunk, [=](size_t range, const auto& item) { out[place[range]++] = item(); });
+    });
+    return items;
 }
 
-// The faces of all cells but the collapsed ones, in buckets by their lowest point.
-struct Buckets {
-    Array<Face> faces;
-    std::vector<std::uint32_t> end;  // of every point's bucket, which begins where the one before ends
-};
-
-template <class Cell>
-Face named_face(const int32_t* corners, size_t cell, size_t face, int32_t& lowest) {
-    const auto ids = named_points(Cell{}, corners, face);
-    lowest = ids[0];
-    const std::uint64_t next = static_cast<std::uint64_t>(ids[1]) << 32 | static_cast<std::uint32_t>(ids[2]);
-    const std::uint32_t last = Cell::kFaceCorners == 4 ? static_cast<std::uint32_t>(ids[Cell::kFaceCorners - 1]) : 0;
-    return {next, last, static_cast<int32_t>(Cell::kFaces * cell + face)};
-}
-
-// A counting sort: counts, prefix sums, scattering.
-template <class Cell>
-Buckets sort_faces(Gluing<Cell>& gluing, size_t points) {
-    std::vector<std::uint32_t> start(points + 1);
-    std::vector<std::uint8_t> loose(gluing.cells);
-    for (size_t cell = 0; cell < gluing.cells; ++cell) {
-        const int32_t* ids = gluing.corners.data() + Cell::kCorners * cell;
-        if (collapsed<Cell>(ids)) {
-            loose[cell] = 1;
-            if (gluing.oddities.collapsed_cells++ == 0) gluing.oddities.collapsed_cell = static_cast<int32_t>(cell);
-            continue;
-        }
-        for (size_t face = 0; face < Cell::kFaces; ++face)
-            ++start[static_cast<size_t>(lowest_point<Cell>(ids, face)) + 1];
-    }
-    for (size_t point = 0; point < points; ++point) start[point + 1] += start[point];
-    Array<Face> faces(start[points]);
-    for (size_t cell = 0; cell < gluing.cells; ++cell) {
-        if (loose[cell]) continue;
-        for (size_t face = 0; face < Cell::kFaces; ++face) {
-            int32_t lowest;
-            const Face named = named_face<Cell>(gluing.corners.data() + Cell::kCorners * cell, cell, face, lowest);
-            faces[start[static_cast<size_t>(lowest)]++] = named;
-        }
-    }
-    return {std::move(faces), std::move(start)};  // scattering has moved every start to the bucket's end
-}
-
-// Makes twins of the two faces that are the same. Faces of more than two cells stay apart, and the first is reported.
-template <class Cell>
-void pair_faces(Gluing<Cell>& gluing, size_t points) {
-    gluing.twins.resize(Cell::kFaces * gluing.cells);
-    std::fill(gluing.twins.begin(), gluing.twins.end(), -1);
-    Buckets buckets = sort_faces(gluing, points);
-    Array<Face>& faces = buckets.faces;
-    int32_t first_crowded = std::numeric_limits<int32_t>::max();
-    size_t begin = 0;
-    for (size_t point = 0; point < points; ++point) {
-        const size_t end = buckets.end[point];
-        std::sort(faces.begin() + static_cast<std::ptrdiff_t>(begin), faces.begin() + static_cast<std::ptrdiff_t>(end));
-        for (size_t same = begin; begin < end; begin = same) {
-            while (same < end && faces[same].same_points(faces[begin])) ++same;
-            const int32_t a = faces[begin].place;
-            if (same - begin == 2) {
-                const int32_t b = faces[begin + 1].place;
-                gluing.twins[static_cast<size_t>(a)] = b;
-                gluing.twins[static_cast<size_t>(b)] = a;
-            } else if (same - begin > 2) {
-                ++gluing.oddities.crowded_faces;
-                if (a >= first_crowded) continue;
-                first_crowded = a;
-                for (size_t n = 0; n < 3; ++n)
-                    gluing.oddities.crowded_cells[n] = faces[begin + n].place / static_cast<int32_t>(Cell::kFaces);
-            }
-        }
-    }
-}
-
-// The corner of a cell that is a point.
-template <class Cell>
-size_t corner_at(const int32_t* ids, int32_t point) {
-    size_t corner = 0;
-    while (ids[corner] != point) ++corner;
-    return corner;
-}
-
-template <class Cell>
-void name_vertex_copies(Gluing<Cell>& gluing, size_t points) {
-    const size_t cells = gluing.cells;
-    gluing.copies.resize(Cell::kCorners * cells);
-    std::fill(gluing.copies.begin(), gluing.copies.end(), -1);
-    std::vector<std::uint8_t> taken(points);
-    size_t next = points;
-    std::vector<std::pair<size_t, size_t>> open;  // cell, corner
-    for (size_t start = 0; start < gluing.copies.size(); ++start) {
-        if (gluing.copies[start] >= 0) continue;
-        const int32_t point = gluing.corners[start];
-        std::uint8_t& seen = taken[static_cast<size_t>(point)];
-        const auto copy = static_cast<int32_t>(seen ? next++ : static_cast<size_t>(point));
-        seen = 1;
-        gluing.copies[start] = copy;
-        open.emplace_back(start / Cell::kCorners, start % Cell::kCorners);
-        while (!open.empty()) {
-            const auto [cell, corner] = open.back();
-            open.pop_back();
-            for (size_t face = 0; face < Cell::kFaces; ++face) {
-                if (!(Cell::kShape.face_corners[face] >> corner & 1)) continue;
-                const int32_t across = gluing.neighbour(cell, face);
-                if (across < 0) continue;
-                const auto other = static_cast<size_t>(across);
-                const size_t there = corner_at<Cell>(gluing.corners.data() + Cell::kCorners * other, point);
-                int32_t& label = gluing.copies[Cell::kCorners * other + there];
-                if (label >= 0) continue;
-                label = copy;
-                open.emplace_back(other, there);
-            }
-        }
-    }
-    if (next > static_cast<size_t>(std::numeric_limits<int32_t>::max()))
-        throw std::length_error("the mesh has too many vertices");
-    gluing.copy_count = next;
-}
-
-// The edge between two corners, and the two faces at every edge.
-template <class Cell>
-struct EdgeTables {
-    std::array<std::array<std::uint8_t, Cell::kCorners>, Cell::kCorners> between{};
-    std::array<std::array<std::uint8_t, 2>, Cell::kEdges> faces{};
-};
-
-template <class Cell>
-constexpr EdgeTables<Cell> kEdgeTables = [] {
-    EdgeTables<Cell> tables;
-    for (std::uint8_t edge = 0; edge < Cell::kEdges; ++edge) {
-        const auto& ends = Cell::kShape.ends[edge];
-        tables.between[ends[0]][ends[1]] = tables.between[ends[1]][ends[0]] = edge;
-        size_t filled = 0;
-        for (std::uint8_t face = 0; face < Cell::kFaces; ++face) {
-            if (Cell::kShape.face_edges[face] >> edge & 1) tables.faces[edge][filled++] = face;
-        }
-    }
-    return tables;
-}();
-
-// Union-find over boundary faces: two that meet at an edge belong to one shell, a connected piece of boundary.
-class Shells {
+template <class Cell, class Value>
+class Gluer {
   public:
-    explicit Shells(size_t faces) : parent_(faces) { std::iota(parent_.begin(), parent_.end(), 0); }
-    int32_t find(int32_t face) {
-        while (parent_[static_cast<size_t>(face)] != face) {
-            face = parent_[static_cast<size_t>(face)] =
-                parent_[static_cast<size_t>(parent_[static_cast<size_t>(face)])];
-        }
-        return face;
+    Gluer(const mesh::Field<Value>& field, const int32_t* cells, size_t count, const PointOrder& points, int threads)
+        : field_(field),
+          cells_(cells),
+          count_(count),
+          points_(points),
+          ranges_(field.size, count),
+          odd_(ranges_.count),
+          threads_(threads) {
+        gluing_.cells = count;
+        gluing_.records = large_array<int32_t>(kRecord<Cell> * count);
+        gluing_.original = large_array<int32_t>(count);
+        group_ = large_array<uint32_t>(field.size + 1);
     }
-    void unite(int32_t a, int32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
+
+    Gluing<Cell> run() {
+        order_cells();
+        pair_faces();
+        number_boundary();
+        return std::move(gluing_);
     }
 
   private:
-    Array<int32_t> parent_;
+    struct Sent {
+        int32_t point, place;
+    };
+    // The cells at a face of more than two, in the mesh's numbers.
+    struct Crowd {
+        std::array<int32_t, 4> points;
+        std::vector<int32_t> cells;
+    };
+    // What a range has come across.
+    struct Found {
+        std::vector<int32_t> boundary, collapsed;
+        std::vector<Crowd> crowds;
+    };
+
+    int32_t* record(size_t cell) { return gluing_.records.data() + kRecord<Cell> * cell; }
+
+    // Cells by their lowest points: into ranges first, then within each.
+    void order_cells() {
+        const Array<Sent> sent = sorted_into<Sent>(
+            ranges_, (count_ + kChunk - 1) / kChunk, first_cell_, threads_, [&](size_t chunk, const auto& add) {
+                const size_t end = std::min(count_, (chunk + 1) * kChunk);
+                for (size_t cell = chunk * kChunk; cell < end; ++cell) {
+                    const int32_t* ids = cells_ + Cell::kCorners * cell;
+                    int32_t low = number(ids[0]);
+                    for (size_t n = 1; n < Cell::kCorners; ++n) low = std::min(low, number(ids[n]));
+                    add(ranges_.of(low), [=] { return Sent{low, static_cast<int32_t>(cell)}; });
+                }
+            });
+        parallel_for(threads_, ranges_.count, [&](size_t range) { order_range(range, sent); });
+        for (const Found& found : odd_) any_collapsed_ |= !found.collapsed.empty();
+        group_.back() = static_cast<uint32_t>(count_);
+    }
+
+    int32_t number(int32_t point) const { return points_.number[static_cast<size_t>(point)]; }
+
+    void order_range(size_t range, const Array<Sent>& sent) {
+        const int32_t base = ranges_.first(range);
+        uint32_t* group = group_.data() + base;
+        const size_t size = ranges_.size(range);
+        std::fill_n(group, size, 0u);
+        for (size_t n = first_cell_[range]; n < first_cell_[range + 1]; ++n) ++group[sent[n].point - base];
+        uint32_t next = first_cell_[range];
+        std::vector<uint32_t> place(size);
+        for (size_t n = 0; n < size; ++n) {
+            place[n] = next;
+            next += std::exchange(group[n], next);
+        }
+        for (size_t n = first_cell_[range]; n < first_cell_[range + 1]; ++n) {
+            const size_t cell = place[static_cast<size_t>(sent[n].point - base)]++;
+            const auto mine = static_cast<size_t>(sent[n].place);
+            gluing_.original[cell] = sent[n].place;
+            const auto ids = mesh::upright<Cell>(field_, cells_ + Cell::kCorners * mine);
+            int32_t* out = record(cell);
+            for (size_t corner = 0; corner < Cell::kCorners; ++corner) out[corner] = number(ids[corner]);
+            std::fill_n(out + Cell::kCorners, Cell::kFaces, -1);
+        }
+        for (size_t cell = first_cell_[range]; cell < first_cell_[range + 1]; ++cell) {
+            if (is_collapsed<Cell>(record(cell))) odd_[range].collapsed.push_back(static_cast<int32_t>(cell));
+        }
+    }
+
+    // Calls visit(face, points) for the faces of a cell that have its lowest point, or for those that have not.
+    template <class Visit>
+    void for_faces(size_t cell, bool own, const Visit& visit) const {
+        const int32_t* ids = gluing_.record(cell);
+        if (any_collapsed_ && is_collapsed<Cell>(ids)) return;
+        const mesh::Mask others = kOpposite<Cell>[lowest_corner<Cell>(ids)];
+        for (mesh::Mask left = own ? ~others & ((mesh::Mask{1} << Cell::kFaces) - 1) : others; left; left &= left - 1) {
+            const auto face = static_cast<size_t>(std::countr_zero(left));
+            visit(face, named_points(Cell{}, ids, face));
+        }
+    }
+
+    // Faces that do not have their cell's lowest point are sent to the range of their own. Then each range has all
+    // faces of its points.
+    void pair_faces() {
+        std::vector<uint32_t> start;
+        const Array<Sent> sent = sorted_into<Sent>(
+            ranges_, (count_ + kChunk - 1) / kChunk, start, threads_, [&](size_t chunk, const auto& add) {
+                const size_t end = std::min(count_, (chunk + 1) * kChunk);
+                for (size_t cell = chunk * kChunk; cell < end; ++cell) {
+                    for_faces(cell, false, [&](size_t face, const std::array<int32_t, 4>& points) {
+                        const Sent item{points[0], static_cast<int32_t>(Cell::kFaces * cell + face)};
+                        add(ranges_.of(points[0]), [=] { return item; });
+                    });
+                }
+            });
+        parallel_for(
+            threads_, ranges_.count, [] { return Matcher(); },
+            [&](Matcher& matcher, size_t range) {
+                pair_range(range, sent.data() + start[range], start[range + 1] - start[range], matcher);
+            });
+    }
+
+    void pair_range(size_t range, const Sent* sent, size_t count, Matcher& matcher) {
+        const int32_t base = ranges_.first(range);
+        const size_t size = ranges_.size(range);
+        std::vector<uint32_t> end(size + 1);
+        for (size_t n = 0; n < count; ++n) ++end[static_cast<size_t>(sent[n].point - base) + 1];
+        for (size_t n = 0; n < size; ++n) end[n + 1] += end[n];
+        Array<int32_t> places(count);
+        for (size_t n = 0; n < count; ++n) places[end[static_cast<size_t>(sent[n].point - base)]++] = sent[n].place;
+        for (size_t n = 0, begin = 0; n < size; begin = end[n++]) {
+            const size_t first = group_[static_cast<size_t>(base) + n],
+                         last = group_[static_cast<size_t>(base) + n + 1];
+            matcher.clear(Cell::kFaces * (last - first) + end[n] - begin);
+            for (size_t cell = first; cell < last; ++cell) {
+                for_faces(cell, true, [&](size_t face, const std::array<int32_t, 4>& points) {
+                    see(range, points, static_cast<int32_t>(Cell::kFaces * cell + face), matcher);
+                });
+            }
+            for (size_t at = begin; at < end[n]; ++at) {
+                const auto place = static_cast<size_t>(places[at]);
+                const int32_t* ids = gluing_.record(place / Cell::kFaces);
+                see(range, named_points(Cell{}, ids, place % Cell::kFaces), places[at], matcher);
+            }
+            matcher.for_each([&](const Matcher::Slot& slot) {
+                if (slot.count == 1) odd_[range].boundary.push_back(slot.places[0]);
+            });
+        }
+    }
+
+    int32_t& twin(int32_t place) {
+        const auto at = static_cast<size_t>(place);
+        return record(at / Cell::kFaces)[Cell::kCorners + at % Cell::kFaces];
+    }
+
+    // Glues the second cell at a face to the first, and parts them again where there is a third.
+    void see(size_t range, const std::array<int32_t, 4>& points, int32_t place, Matcher& matcher) {
+        const Matcher::Slot& slot = matcher.add(points, place);
+        if (slot.count == 1) return;
+        const auto [one, other] = slot.places;
+        if (slot.count == 2) {
+            twin(one) = other;
+            twin(other) = one;
+            return;
+        }
+        std::vector<Crowd>& crowds = odd_[range].crowds;
+        if (slot.count == 3) {
+            twin(one) = twin(other) = -1;
+            crowds.push_back({points, {cell_at(one), cell_at(other)}});
+            odd_[range].boundary.insert(odd_[range].boundary.end(), {one, other});
+        }
+        odd_[range].boundary.push_back(place);
+        const auto same = [&](const Crowd& crowd) { return crowd.points == points; };
+        std::find_if(crowds.rbegin(), crowds.rend(), same)->cells.push_back(cell_at(place));
+    }
+
+    int32_t cell_at(int32_t place) const { return gluing_.original[static_cast<size_t>(place) / Cell::kFaces]; }
+
+    // Numbers the faces that are glued to nothing, and reports what is odd. Cells that name a point twice have none.
+    void number_boundary() {
+        Oddities& odd = gluing_.oddities;
+        const std::vector<int32_t>* first = nullptr;
+        for (Found& found : odd_) {
+            gluing_.boundary.insert(gluing_.boundary.end(), found.boundary.begin(), found.boundary.end());
+            gluing_.collapsed.insert(gluing_.collapsed.end(), found.collapsed.begin(), found.collapsed.end());
+            odd.crowded_faces += found.crowds.size();
+            for (Crowd& crowd : found.crowds) {
+                std::sort(crowd.cells.begin(), crowd.cells.end());
+                if (!first || crowd.cells < *first) first = &crowd.cells;
+            }
+        }
+        if (first) std::copy_n(first->begin(), 3, odd.crowded_cells.begin());
+        odd.collapsed_cells = gluing_.collapsed.size();
+        for (const int32_t cell : gluing_.collapsed) {
+            const int32_t mine = gluing_.original[static_cast<size_t>(cell)];
+            if (odd.collapsed_cell < 0 || mine < odd.collapsed_cell) odd.collapsed_cell = mine;
+        }
+        for (size_t n = 0; n < gluing_.boundary.size(); ++n) twin(gluing_.boundary[n]) = -1 - static_cast<int32_t>(n);
+    }
+
+    const mesh::Field<Value>& field_;
+    const int32_t* cells_;
+    size_t count_;
+    const PointOrder& points_;
+    Ranges ranges_;
+    std::vector<uint32_t> first_cell_;  // of every range
+    Array<uint32_t> group_;             // of every point: the first cell whose lowest point it is
+    std::vector<Found> odd_;
+    bool any_collapsed_ = false;
+    int threads_;
+    Gluing<Cell> gluing_;
 };
-
-// Walks around an edge, from a cell on through a face, and gives every edge of a cell that it passes the same name.
-// Returns the boundary face where the walk ends, or -1 if it comes back to where it has been.
-template <class Cell>
-int32_t name_around(Gluing<Cell>& gluing, size_t cell, size_t edge, size_t face, int32_t name) {
-    const auto& ends = Cell::kShape.ends[edge];
-    const int32_t* ids = gluing.corners.data() + Cell::kCorners * cell;
-    const int32_t a = ids[ends[0]], b = ids[ends[1]];
-    for (;;) {
-        const int32_t twin = gluing.twins[Cell::kFaces * cell + face];
-        if (twin < 0) return -1 - twin;
-        cell = static_cast<size_t>(twin) / Cell::kFaces;
-        const size_t entered = static_cast<size_t>(twin) % Cell::kFaces;
-        ids = gluing.corners.data() + Cell::kCorners * cell;
-        const size_t here = kEdgeTables<Cell>.between[corner_at<Cell>(ids, a)][corner_at<Cell>(ids, b)];
-        int32_t& label = gluing.edges[Cell::kEdges * cell + here];
-        if (label >= 0) return -1;
-        label = name;
-        const auto& faces = kEdgeTables<Cell>.faces[here];
-        face = faces[0] == entered ? faces[1] : faces[0];
-    }
-}
-
-template <class Cell>
-void name_edge_copies(Gluing<Cell>& gluing) {
-    for (int32_t& twin : gluing.twins) {
-        if (twin < 0) twin = -1 - static_cast<int32_t>(gluing.boundary_faces++);
-    }
-    Shells shells(gluing.boundary_faces);
-    gluing.edges.resize(Cell::kEdges * gluing.cells);
-    std::fill(gluing.edges.begin(), gluing.edges.end(), -1);
-    size_t next = 0;
-    for (size_t start = 0; start < gluing.edges.size(); ++start) {
-        if (gluing.edges[start] >= 0) continue;
-        const auto name = static_cast<int32_t>(next++);
-        gluing.edges[start] = name;
-        const size_t cell = start / Cell::kEdges, edge = start % Cell::kEdges;
-        const auto& faces = kEdgeTables<Cell>.faces[edge];
-        const int32_t one = name_around(gluing, cell, edge, faces[0], name);
-        const int32_t other = name_around(gluing, cell, edge, faces[1], name);
-        if (one >= 0 && other >= 0) shells.unite(one, other);
-    }
-    gluing.edge_count = next;
-    gluing.shell.resize(gluing.boundary_faces);
-    for (size_t face = 0; face < gluing.boundary_faces; ++face) {
-        gluing.shell[face] = shells.find(static_cast<int32_t>(face));
-        gluing.shells += gluing.shell[face] == static_cast<int32_t>(face);
-    }
-}
 
 }  // namespace
 
-template <class Cell>
-Gluing<Cell> glue(Array<int32_t> corners, size_t points) {
-    Gluing<Cell> gluing;
-    gluing.cells = corners.size() / Cell::kCorners;
-    gluing.corners = std::move(corners);
-    if (gluing.cells * Cell::kEdges > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
+template <class Cell, class Value>
+Gluing<Cell> glue(const mesh::Field<Value>& field, const int32_t* cells, size_t count, const PointOrder& points,
+                  int threads) {
+    if (count * Cell::kEdges > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
         throw std::length_error("the mesh has more cells than an index can name");
     }
-    pair_faces(gluing, points);
-    name_vertex_copies(gluing, points);
-    name_edge_copies(gluing);
-    return gluing;
+    return Gluer<Cell, Value>(field, cells, count, points, threads).run();
 }
 
-template Gluing<mesh::Tet> glue<mesh::Tet>(Array<int32_t>, size_t);
-template Gluing<mesh::Hex> glue<mesh::Hex>(Array<int32_t>, size_t);
+template Gluing<mesh::Tet> glue(const mesh::Field<float>&, const int32_t*, size_t, const PointOrder&, int);
+template Gluing<mesh::Tet> glue(const mesh::Field<double>&, const int32_t*, size_t, const PointOrder&, int);
+template Gluing<mesh::Hex> glue(const mesh::Field<float>&, const int32_t*, size_t, const PointOrder&, int);
+template Gluing<mesh::Hex> glue(const mesh::Field<double>&, const int32_t*, size_t, const PointOrder&, int);
 
 }  // namespace isocore::thinning

@@ -1,13 +1,16 @@
-// gluing.hpp - The mesh glued along its faces only: what M means in the README. Two cells are glued where both, and no
-// third, have the same face. An edge or vertex that cells touch without being glued around it counts as several copies.
+// gluing.hpp - The mesh glued along its faces: two cells are glued where both, and no third, have the same face. An
+// edge that cells touch without being glued around it counts as several copies (docs/proofs/thinning.md, section 2).
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "common/array.hpp"
-#include "common/mesh_cells.hpp"
+#include "common/mesh_field.hpp"
+#include "thinning/mesh/ordering.hpp"
+#include "thinning/mesh/records.hpp"
 
 namespace isocore::thinning {
 
@@ -21,23 +24,19 @@ struct Oddities {
 template <class Cell>
 struct Gluing {
     std::size_t cells = 0;
-    Array<std::int32_t> corners;  // kCorners point ids per cell
-    Array<std::int32_t> twins;    // per face: kFaces * cell + face on its other side, or -1 - number of boundary face
-    Array<std::int32_t> copies;   // per corner: its vertex copy
-    Array<std::int32_t> edges;    // per edge of a cell: its edge copy
-    std::size_t copy_count = 0, edge_count = 0, boundary_faces = 0;
-    Array<std::int32_t> shell;  // per boundary face: the lowest face of its connected piece of boundary
-    std::size_t shells = 0;
-    Oddities oddities;
+    Array<std::int32_t> records;          // records.hpp; at the boundary, a twin is -1 - number of the boundary face
+    Array<std::int32_t> original;         // by cell: the mesh's
+    Array<std::int32_t> boundary;         // by number: kFaces * cell + face
+    std::vector<std::int32_t> collapsed;  // the cells that name a point twice, ascending
+    Oddities oddities;                    // in the mesh's numbers
 
-    std::int32_t neighbour(std::size_t cell, std::size_t face) const {
-        const std::int32_t twin = twins[Cell::kFaces * cell + face];
-        return twin < 0 ? -1 : twin / static_cast<std::int32_t>(Cell::kFaces);
-    }
+    const std::int32_t* record(std::size_t cell) const { return records.data() + kRecord<Cell> * cell; }
 };
 
-// corners: kCorners point ids per cell, in our order, each below `points`. Linear in the number of cells.
-template <class Cell>
-Gluing<Cell> glue(Array<std::int32_t> corners, std::size_t points);
+// cells: kCorners point ids per cell, in VTK's order, each below field.size. Cells are ordered by their lowest point in
+// the new order, then as the mesh has them. Linear in the number of cells; the same for any number of threads.
+template <class Cell, class Value>
+Gluing<Cell> glue(const mesh::Field<Value>& field, const std::int32_t* cells, std::size_t count,
+                  const PointOrder& points, int threads);
 
 }  // namespace isocore::thinning

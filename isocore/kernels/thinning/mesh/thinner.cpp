@@ -2,16 +2,20 @@
 // Visualization 1996; "Fast Isosurface Generation Using the Volume Thinning Algorithm", IEEE TVCG 7(1), 2001.
 //
 // The paper's rules for its classes C1 to C4 are replaced by one that is both safer and thinner (safe_rule.hpp;
-// README.md says where we depart). Every vertex and edge copy keeps the count of the remaining cells that touch it and
-// the XOR of their ids: when the count drops to one, the XOR is the survivor, whose boundary has just come free.
+// README.md says where we depart). Cells go block by block first, on several threads: those all of whose points belong
+// to one block alone, around a void that is opened in its midst. What remains, the rims of blocks, goes after that.
 #include "thinning/mesh/thinner.hpp"
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "thinning/safe_rule.hpp"
+#include "common/parallel.hpp"
+#include "thinning/mesh/extrema.hpp"
+#include "thinning/mesh/outsides.hpp"
+#include "thinning/mesh/remaining.hpp"
 
 namespace isocore::thinning {
 namespace {
@@ -19,247 +23,154 @@ namespace {
 using std::int32_t;
 using std::size_t;
 
-struct Touching {
-    std::uint32_t extremum : 1 = 0;
-    std::uint32_t count : 31 = 0;
-    int32_t survivor = 0;  // the XOR of the remaining cells' ids
-};
-
-enum : std::uint8_t { kRemoved = 1, kQueued = 2 };
-
 template <class Cell>
 class Thinner {
   public:
-    Thinner(const Gluing<Cell>& gluing, const double* heights)
-        : gluing_(gluing), vertices_(gluing.copy_count), edges_(gluing.edge_count), state_(gluing.cells) {
-        count_cells();
-        mark_extrema(heights);
+    Thinner(const Gluing<Cell>& gluing, const Array<double>& heights, Work work)
+        : gluing_(gluing),
+          left_(gluing),
+          outsides_(gluing),
+          blocks_(gluing, heights.size(), work.cells_per_block),
+          threads_(work.threads) {
+        extrema_ = count_cells(gluing, heights, blocks_, left_, work.threads);
     }
 
     Skeleton run() {
+        outsides_.join_boundary();
+        const size_t voids = outsides_.add(blocks_.size());
+        parallel_for(threads_, blocks_.size(),
+                     [&](size_t block) { thin_block(block, static_cast<int32_t>(voids + block)); });
         for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            for (size_t face = 0; face < Cell::kFaces; ++face) {
-                if (gluing_.neighbour(cell, face) < 0) queue(static_cast<int32_t>(cell));
-            }
+            if (!left_.remains(cell)) continue;
+            remaining_.push_back(static_cast<int32_t>(cell));
+            if (left_.used_faces(cell) != kAllFaces) left_.queue(static_cast<int32_t>(cell), waiting_);
         }
-        remove_simple();
-        if (gluing_.shells > 1) {
-            label_outside();
-            while (prick() || tunnel()) remove_simple();
-        }
+        remove_simple(waiting_);
+        while (prick() || tunnel()) continue;
         return collect();
     }
 
   private:
-    const int32_t* copies(size_t cell) const { return gluing_.copies.data() + Cell::kCorners * cell; }
-    const int32_t* edges(size_t cell) const { return gluing_.edges.data() + Cell::kEdges * cell; }
-    Touching& vertex(int32_t copy) { return vertices_[static_cast<size_t>(copy)]; }
-    Touching& edge(int32_t copy) { return edges_[static_cast<size_t>(copy)]; }
-    bool remains(size_t cell) const { return !(state_[cell] & kRemoved); }
+    static constexpr size_t kRecordsAhead = 12, kNamedAhead = 6;
+    static constexpr Mask kAllFaces = (Mask{1} << Cell::kFaces) - 1;
 
-    void count_cells() {
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            const auto add = [id = static_cast<int32_t>(cell)](Touching& touching) {
-                ++touching.count;
-                touching.survivor ^= id;
-            };
-            for (size_t n = 0; n < Cell::kCorners; ++n) add(vertex(copies(cell)[n]));
-            for (size_t n = 0; n < Cell::kEdges; ++n) add(edge(edges(cell)[n]));
-        }
-    }
-
-    // Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners
-    // across it may both be.
-    void mark_extrema(const double* heights) {
-        enum : std::uint8_t { kHasLower = 1, kHasHigher = 2 };
-        std::vector<std::uint8_t> seen(gluing_.copy_count);
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            const int32_t* points = gluing_.corners.data() + Cell::kCorners * cell;
-            std::array<double, Cell::kCorners> height;
-            for (size_t n = 0; n < Cell::kCorners; ++n) height[n] = heights[points[n]];
-            std::array<std::uint8_t, Cell::kCorners> marks{};
-            for (const auto& [a, b] : Cell::kShape.ends) {
-                const bool above = height[a] != height[b] ? height[a] > height[b] : points[a] > points[b];
-                marks[a] |= above ? kHasLower : kHasHigher;
-                marks[b] |= above ? kHasHigher : kHasLower;
-            }
-            for (size_t n = 0; n < Cell::kCorners; ++n) seen[static_cast<size_t>(copies(cell)[n])] |= marks[n];
-        }
-        for (size_t copy = 0; copy < gluing_.copy_count; ++copy) {
-            if (vertices_[copy].count == 0 || seen[copy] == (kHasLower | kHasHigher)) continue;
-            vertices_[copy].extremum = 1;
-            ++extrema_;
-        }
-    }
-
-    void queue(int32_t cell) {
-        std::uint8_t& state = state_[static_cast<size_t>(cell)];
-        if (state != 0) return;  // removed, or waiting already
-        state = kQueued;
-        waiting_.push_back(cell);
-    }
-
-    Used used(size_t cell) const {
-        Used out;
-        for (size_t n = 0; n < Cell::kCorners; ++n)
-            out.corners |= Mask{vertices_[static_cast<size_t>(copies(cell)[n])].count > 1} << n;
-        for (size_t n = 0; n < Cell::kEdges; ++n)
-            out.edges |= Mask{edges_[static_cast<size_t>(edges(cell)[n])].count > 1} << n;
-        for (size_t n = 0; n < Cell::kFaces; ++n) {
-            const int32_t across = gluing_.neighbour(cell, n);
-            out.faces |= Mask{across >= 0 && remains(static_cast<size_t>(across))} << n;
-        }
-        return out;
-    }
-
-    // Would its removal be safe, and leave every extremum in a remaining cell?
-    bool is_safe(size_t cell, const Used& used) const {
-        for (Mask left = ~used.corners & ((Mask{1} << Cell::kCorners) - 1); left != 0; left &= left - 1) {
-            if (vertices_[static_cast<size_t>(copies(cell)[std::countr_zero(left)])].extremum) return false;
-        }
-        return is_connected(Cell{}, used);
-    }
-
-    void remove(size_t cell) {
-        state_[cell] |= kRemoved;
-        const auto drop = [&](Touching& touching) {
-            touching.survivor ^= static_cast<int32_t>(cell);
-            if (--touching.count == 1) queue(touching.survivor);
-        };
-        for (size_t face = 0; face < Cell::kFaces; ++face) {
-            const int32_t across = gluing_.neighbour(cell, face);
-            if (across >= 0) queue(across);
-        }
-        for (size_t n = 0; n < Cell::kEdges; ++n) drop(edge(edges(cell)[n]));
-        for (size_t n = 0; n < Cell::kCorners; ++n) drop(vertex(copies(cell)[n]));
-        if (!labels_.empty()) join_outside(cell);
-    }
-
-    // Peels off cells whose removal changes nothing but the size of what remains, from the boundary inward.
-    void remove_simple() {
-        for (size_t head = 0; head < waiting_.size(); ++head) {
-            const auto cell = static_cast<size_t>(waiting_[head]);
-            state_[cell] &= static_cast<std::uint8_t>(~kQueued);
-            if (!remains(cell)) continue;
-            const Used left = used(cell);
-            if (left.euler() == 1 && is_safe(cell, left)) remove(cell);
-        }
-        waiting_.clear();
-    }
-
-    // Outside components: pieces of boundary, each with the removed cells behind it. Named by boundary faces.
-    void label_outside() {
-        labels_.assign(gluing_.cells, -1);
-        outside_.resize(gluing_.boundary_faces);
-        for (size_t face = 0; face < gluing_.boundary_faces; ++face) outside_[face] = gluing_.shell[face];
-        std::vector<size_t> open;
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            for (size_t face = 0; face < Cell::kFaces; ++face) {
-                const int32_t twin = gluing_.twins[Cell::kFaces * cell + face];
-                if (twin < 0 && !remains(cell)) spread_label(cell, -1 - twin, open);
-            }
-        }
-    }
-
-    void spread_label(size_t start, int32_t label, std::vector<size_t>& open) {
-        if (labels_[start] >= 0) return unite(labels_[start], label);
-        labels_[start] = label;
-        open.push_back(start);
-        while (!open.empty()) {
-            const size_t cell = open.back();
-            open.pop_back();
-            for (size_t face = 0; face < Cell::kFaces; ++face) {
-                const int32_t across = gluing_.neighbour(cell, face);
-                if (across < 0 || remains(static_cast<size_t>(across)) || labels_[static_cast<size_t>(across)] >= 0)
-                    continue;
-                labels_[static_cast<size_t>(across)] = label;
-                open.push_back(static_cast<size_t>(across));
-            }
-        }
-    }
-
-    int32_t find(int32_t label) {
-        auto& parent = outside_;
-        while (parent[static_cast<size_t>(label)] != label) {
-            label = parent[static_cast<size_t>(label)] =
-                parent[static_cast<size_t>(parent[static_cast<size_t>(label)])];
-        }
-        return label;
-    }
-    void unite(int32_t a, int32_t b) {
-        a = find(a);
-        b = find(b);
-        outside_[static_cast<size_t>(std::max(a, b))] = std::min(a, b);
-    }
-
-    // The outside component behind a face, or -1 where a cell remains.
+    // The outside behind a face, or -1 where a cell remains. While blocks are thinned, outsides that are one by now may
+    // still have several names.
     int32_t outside(size_t cell, size_t face) {
-        const int32_t twin = gluing_.twins[Cell::kFaces * cell + face];
-        if (twin < 0) return find(-1 - twin);
+        const int32_t twin = left_.record(cell)[Cell::kCorners + face];
+        if (twin < 0) return -1 - twin;
         const size_t across = static_cast<size_t>(twin) / Cell::kFaces;
-        return remains(across) ? -1 : find(labels_[across]);
+        return left_.remains(across) ? -1 : left_.outside_at(across);
     }
 
-    void join_outside(size_t cell) {
-        for (size_t face = 0; face < Cell::kFaces; ++face) {
-            const int32_t label = outside(cell, face);
-            if (label < 0) continue;
-            if (labels_[cell] < 0) labels_[cell] = label;
-            unite(labels_[cell], label);
+    int32_t any_outside(size_t cell, const Used& used) {
+        return outside(cell, static_cast<size_t>(std::countr_one(used.faces)));
+    }
+
+    // Peels off the cells of a queue whose removal changes nothing but the size of what remains, and those whose
+    // boundary comes free by that.
+    template <class MayGo>
+    void remove_simple(Array<int32_t>& waiting, const MayGo& may_go) {
+        for (size_t head = 0; head < waiting.size(); ++head) {
+            if (head + kRecordsAhead < waiting.size()) left_.prefetch_record(waiting[head + kRecordsAhead]);
+            if (head + kNamedAhead < waiting.size()) left_.prefetch_named(waiting[head + kNamedAhead]);
+            const auto cell = static_cast<size_t>(waiting[head]);
+            left_.unqueue(cell);
+            if (!left_.remains(cell) || !may_go(cell)) continue;
+            const Used used = left_.used(cell);
+            if (used.euler() == 1 && left_.is_safe(cell, used)) {
+                left_.remove(cell, used, any_outside(cell, used), waiting);
+            }
         }
+        waiting.clear();
+    }
+    void remove_simple(Array<int32_t>& waiting) {
+        remove_simple(waiting, [](size_t) { return true; });
     }
 
-    // Outside components that a cell's faces lie at.
-    size_t components_at(size_t cell) {
-        std::array<int32_t, Cell::kFaces> seen;
-        size_t count = 0;
-        for (size_t face = 0; face < Cell::kFaces; ++face) {
-            const int32_t label = outside(cell, face);
-            if (label >= 0 && std::find(seen.begin(), seen.begin() + count, label) == seen.begin() + count)
-                seen[count++] = label;
+    // The cells of a block that touch no other block's, from its boundary inwards; where it has none, from its midst.
+    void thin_block(size_t block, int32_t new_void) {
+        const auto inner = [&](size_t cell) { return blocks_.inner(left_.record(cell), block); };
+        const size_t first = blocks_.first_cell(block), end = blocks_.first_cell(block + 1);
+        Array<int32_t> waiting;
+        const auto queue_if = [&](size_t cell) {
+            if (left_.used_faces(cell) != kAllFaces && inner(cell)) left_.queue(static_cast<int32_t>(cell), waiting);
+        };
+        for (size_t cell = first; cell < end; ++cell) queue_if(cell);
+        if (waiting.empty()) {
+            for (size_t n = 0; n < end - first; ++n) {
+                const size_t cell = first + (n + (end - first) / 2) % (end - first);
+                if (left_.loose(cell) || !inner(cell)) continue;
+                left_.remove(cell, left_.used(cell), new_void, waiting);
+                break;
+            }
         }
-        return count;
+        remove_simple(waiting, inner);
     }
 
-    // Opens voids: removes a cell whose free pieces lie at as many different outside components, so that no tunnel is
-    // dug.
-    bool may_prick(size_t cell, const Used& left) {
-        const int pieces = 2 - left.euler();
-        return pieces >= 2 && is_safe(cell, left) && components_at(cell) == static_cast<size_t>(pieces);
-    }
-
+    // Opens voids: removes a cell whose free pieces lie at as many different outsides, so that no tunnel is dug.
     bool prick() {
         bool any = false;
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            if (!remains(cell) || !may_prick(cell, used(cell))) continue;
-            remove(cell);
-            remove_simple();
+        std::erase_if(remaining_, [&](int32_t cell) { return !left_.remains(static_cast<size_t>(cell)); });
+        for (const int32_t each : remaining_) {
+            const auto cell = static_cast<size_t>(each);
+            if (!left_.remains(cell) || left_.loose(cell)) continue;
+            const Used used = left_.used(cell);
+            const int pieces = 2 - used.euler();
+            if (pieces < 2 || !left_.is_safe(cell, used) || join_outsides(cell, false) != static_cast<size_t>(pieces))
+                continue;
+            open(cell, used);
             any = true;
         }
         return any;
     }
 
-    // Where no single cell reaches both sides: the outside components grow into what remains, and where two of them
-    // meet the cells on the way are removed from one side to the other, as far as each step is safe.
-    bool tunnel() {
-        std::vector<int32_t> reached_from(gluing_.cells, -1), owner(gluing_.cells, -1);
-        std::vector<size_t> open;
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            for (size_t face = 0; remains(cell) && owner[cell] < 0 && face < Cell::kFaces; ++face)
-                owner[cell] = outside(cell, face);
-            if (owner[cell] >= 0) open.push_back(cell);
+    void open(size_t cell, const Used& used) {
+        join_outsides(cell, true);
+        left_.remove(cell, used, any_outside(cell, used), waiting_);
+        remove_simple(waiting_);
+    }
+
+    // How many outsides a cell's faces lie at; makes them one, if wanted.
+    size_t join_outsides(size_t cell, bool wanted) {
+        std::array<int32_t, Cell::kFaces> seen;
+        size_t count = 0;
+        for (size_t face = 0; face < Cell::kFaces; ++face) {
+            const int32_t name = outside(cell, face);
+            if (name < 0) continue;
+            const int32_t found = outsides_.find(name);
+            if (std::find(seen.begin(), seen.begin() + count, found) == seen.begin() + count) seen[count++] = found;
         }
-        for (size_t head = 0; head < open.size(); ++head) {
-            const size_t cell = open[head];
-            for (size_t face = 0; remains(cell) && face < Cell::kFaces; ++face) {
-                const int32_t across = gluing_.neighbour(cell, face);
-                if (across < 0 || !remains(static_cast<size_t>(across))) continue;
+        for (size_t n = 1; wanted && n < count; ++n) outsides_.unite(seen[0], seen[n]);
+        return count;
+    }
+
+    // Where no single cell reaches both sides: the outsides grow into what remains, and where two of them meet the
+    // cells on the way are removed from one side to the other, as far as each step is safe.
+    bool tunnel() {
+        std::erase_if(remaining_, [&](int32_t cell) { return !left_.remains(static_cast<size_t>(cell)); });
+        Growth growth(gluing_.cells);
+        std::vector<size_t> open_cells;
+        for (const int32_t each : remaining_) {
+            const auto cell = static_cast<size_t>(each);
+            for (size_t face = 0; growth.owner(cell) < 0 && face < Cell::kFaces; ++face) {
+                const int32_t name = outside(cell, face);
+                if (name < 0) continue;
+                growth.reach(cell, -1, name);
+                open_cells.push_back(cell);
+            }
+        }
+        for (size_t head = 0; head < open_cells.size(); ++head) {
+            const size_t cell = open_cells[head];
+            for (size_t face = 0; left_.remains(cell) && face < Cell::kFaces; ++face) {
+                const int32_t across = neighbour<Cell>(left_.record(cell), face);
+                if (across < 0 || !left_.remains(static_cast<size_t>(across))) continue;
                 const auto other = static_cast<size_t>(across);
-                if (owner[other] < 0) {
-                    owner[other] = owner[cell];
-                    reached_from[other] = static_cast<int32_t>(cell);
-                    open.push_back(other);
-                } else if (find(owner[other]) != find(owner[cell]) && open_path(reached_from, cell, other)) {
+                if (growth.owner(other) < 0) {
+                    growth.reach(other, static_cast<int32_t>(cell), growth.owner(cell));
+                    open_cells.push_back(other);
+                } else if (outsides_.find(growth.owner(other)) != outsides_.find(growth.owner(cell)) &&
+                           open_path(growth.path(cell, other))) {
                     return true;
                 }
             }
@@ -267,51 +178,61 @@ class Thinner {
         return false;
     }
 
-    bool open_path(const std::vector<int32_t>& reached_from, size_t one, size_t other) {
-        std::vector<size_t> path;
-        for (auto cell = static_cast<int32_t>(one); cell >= 0; cell = reached_from[static_cast<size_t>(cell)])
-            path.push_back(static_cast<size_t>(cell));
-        std::reverse(path.begin(), path.end());
-        for (auto cell = static_cast<int32_t>(other); cell >= 0; cell = reached_from[static_cast<size_t>(cell)])
-            path.push_back(static_cast<size_t>(cell));
+    bool open_path(const std::vector<size_t>& path) {
         for (const size_t cell : path) {
-            if (!remains(cell) || !is_safe(cell, used(cell))) return false;
-            remove(cell);
+            if (!left_.remains(cell) || left_.loose(cell)) return false;
+            const Used used = left_.used(cell);
+            if (!left_.is_safe(cell, used)) return false;
+            join_outsides(cell, true);
+            left_.remove(cell, used, any_outside(cell, used), waiting_);
         }
+        remove_simple(waiting_);
         return true;
     }
 
     Skeleton collect() {
         Skeleton skeleton;
         skeleton.extrema = extrema_;
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            if (!remains(cell)) continue;
-            skeleton.cells.push_back(static_cast<int32_t>(cell));
-            ++skeleton.classes[static_cast<size_t>(std::popcount(used(cell).faces))];
+        for (const int32_t cell : remaining_) {
+            if (left_.remains(static_cast<size_t>(cell))) skeleton.cells.push_back(cell);
         }
-        std::vector<std::uint8_t> roots(outside_.size());
-        for (const int32_t label : outside_) roots[static_cast<size_t>(find(label))] = 1;
-        skeleton.outside_components = static_cast<size_t>(std::count(roots.begin(), roots.end(), 1));
         return skeleton;
     }
 
     const Gluing<Cell>& gluing_;
-    std::vector<Touching> vertices_, edges_;
-    std::vector<std::uint8_t> state_;
-    std::vector<int32_t> waiting_;
-    std::vector<int32_t> labels_;   // of removed cells; empty until voids are to be opened
-    std::vector<int32_t> outside_;  // union-find over boundary faces
+    Remaining<Cell> left_;
+    Outsides<Cell> outsides_;
+    Blocks<Cell> blocks_;
+    int threads_;
+    Array<int32_t> waiting_;
+    std::vector<int32_t> remaining_;  // those that remained when this was last looked at
     size_t extrema_ = 0;
 };
 
 }  // namespace
 
 template <class Cell>
-Skeleton thin(const Gluing<Cell>& gluing, const double* heights) {
-    return Thinner<Cell>(gluing, heights).run();
+Skeleton thin(const Gluing<Cell>& gluing, const Array<double>& heights, Work work) {
+    return Thinner<Cell>(gluing, heights, work).run();
 }
 
-template Skeleton thin<mesh::Tet>(const Gluing<mesh::Tet>&, const double*);
-template Skeleton thin<mesh::Hex>(const Gluing<mesh::Hex>&, const double*);
+template <class Cell>
+std::array<size_t, 7> classes_of(const Gluing<Cell>& gluing, const Array<int32_t>& skeleton) {
+    std::array<size_t, 7> classes{};
+    for (const int32_t cell : skeleton) {
+        size_t beside = 0;
+        for (size_t face = 0; face < Cell::kFaces; ++face) {
+            const int32_t across = neighbour<Cell>(gluing.record(static_cast<size_t>(cell)), face);
+            beside += across >= 0 && std::binary_search(skeleton.begin(), skeleton.end(), across);
+        }
+        ++classes[beside];
+    }
+    return classes;
+}
+
+template Skeleton thin<mesh::Tet>(const Gluing<mesh::Tet>&, const Array<double>&, Work);
+template Skeleton thin<mesh::Hex>(const Gluing<mesh::Hex>&, const Array<double>&, Work);
+template std::array<size_t, 7> classes_of<mesh::Tet>(const Gluing<mesh::Tet>&, const Array<int32_t>&);
+template std::array<size_t, 7> classes_of<mesh::Hex>(const Gluing<mesh::Hex>&, const Array<int32_t>&);
 
 }  // namespace isocore::thinning

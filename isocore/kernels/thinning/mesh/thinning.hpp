@@ -14,28 +14,23 @@
 #include "common/array.hpp"
 #include "common/mesh_field.hpp"
 #include "thinning/mesh/gluing.hpp"
+#include "thinning/mesh/records.hpp"
+#include "thinning/mesh/thinner.hpp"
 
 namespace isocore::thinning {
 
-// A cell of the index: kCorners points, upright; kFaces twins (gluing.hpp); kEdges edge ids, shared by all edges
-// between the same two points, and bitwise negated (so below 0) in the first cell that names the edge: its owner, which
-// numbers its vertex. Cells and points are renumbered so that neighbours lie close together.
-template <class Cell>
-inline constexpr std::size_t kRecord = Cell::kCorners + Cell::kFaces + Cell::kEdges;
-
 struct Part {
-    Array<std::int32_t> records;
+    Array<std::int32_t> records;   // records.hpp, by cell
     Array<std::int32_t> skeleton;  // cells, by ascending low
     Array<double> low, high;       // of every skeleton cell: it meets the isosurface iff low < isovalue <= high
     std::array<std::size_t, 7> classes{};
-    std::size_t extrema = 0, bodies_and_voids = 0;
+    std::size_t extrema = 0;
     Oddities oddities;
 };
 
 struct Index {
     Part tets, hexes;
     Array<std::int32_t> points;  // the mesh's id of every point of the index
-    std::size_t edge_count = 0;
 };
 
 struct Cells {
@@ -44,7 +39,7 @@ struct Cells {
 };
 
 template <class Value>
-Index build(const mesh::Field<Value>& field, const Cells& cells);
+Index build(const mesh::Field<Value>& field, const Cells& cells, Work work);
 
 // An index as it lies in memory or on disk.
 struct PartView {
@@ -55,14 +50,12 @@ struct PartView {
 
 struct IndexView {
     PartView tets, hexes;
-    const std::int32_t* points;    // the mesh's id of every point of the index
-    std::int32_t* vertex_of_edge;  // scratch, one per edge: of no meaning between two calls, and not shared by two
+    const std::int32_t* points;  // the mesh's id of every point of the index
 };
 
-// Throws std::invalid_argument unless all that the index names is there, every edge has one owner and the same ends
-// wherever it is named, cells are glued both ways, and the skeleton is sorted by low. `points` and `edges` are how many
-// there are.
-void check_index(const IndexView& index, std::size_t points, std::size_t edges);
+// Throws std::invalid_argument unless all that the index names is there, cells are glued both ways, and the skeleton is
+// sorted by low. `points` is how many there are.
+void check_index(const IndexView& index, std::size_t points);
 
 template <class Coordinate>
 struct Mesh {
@@ -74,7 +67,6 @@ struct Mesh {
 };
 
 // field: the points and values as the index numbers them. The index must be one that check_index accepts.
-// Throws std::invalid_argument where its skeleton leaves out cells that own a crossed edge.
 template <class Coordinate, class Value>
 Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads,
                            bool with_edges = false);

@@ -1,0 +1,123 @@
+// extrema.hpp - The first look at all cells: blocks of them that threads can thin apart, how many cells touch each
+// point, and which points are extrema.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/parallel.hpp"
+#include "thinning/mesh/remaining.hpp"
+
+namespace isocore::thinning {
+
+// Blocks of cells that follow one another, and of their lowest points. A point belongs to one block alone if it lies in
+// the block's part of the points and no other block's cell touches it.
+template <class Cell>
+class Blocks {
+  public:
+    // cells: how many each block has, about.
+    Blocks(const Gluing<Cell>& gluing, std::size_t points, std::size_t cells)
+        : first_cell_{0}, first_point_{0}, shared_(points) {
+        const auto lowest = [&](std::size_t cell) {
+            return *std::min_element(gluing.record(cell), gluing.record(cell) + Cell::kCorners);
+        };
+        for (std::size_t cell = cells; cell + cells / 2 < gluing.cells; cell += cells) {
+            cell = std::max(cell, first_cell_.back() + 1);
+            while (cell < gluing.cells && lowest(cell) == lowest(cell - 1)) ++cell;
+            if (cell == gluing.cells) break;
+            first_cell_.push_back(cell);
+            first_point_.push_back(lowest(cell));
+        }
+        first_cell_.push_back(gluing.cells);
+        first_point_.push_back(static_cast<std::int32_t>(points));
+    }
+
+    std::size_t size() const { return first_cell_.size() - 1; }
+    std::size_t first_cell(std::size_t block) const { return first_cell_[block]; }
+    bool has(std::size_t block, std::int32_t point) const {
+        return point >= first_point_[block] && point < first_point_[block + 1];
+    }
+    void share(std::int32_t point) { shared_[static_cast<std::size_t>(point)] = 1; }
+
+    bool inner(const std::int32_t* corners, std::size_t block) const {
+        bool inner = true;
+        for (std::size_t n = 0; n < Cell::kCorners; ++n)
+            inner &= corners[n] < first_point_[block + 1] && !shared_[static_cast<std::size_t>(corners[n])];
+        return inner;
+    }
+
+  private:
+    std::vector<std::size_t> first_cell_;
+    std::vector<std::int32_t> first_point_;
+    std::vector<std::uint8_t> shared_;  // by point
+};
+
+enum : std::uint8_t { kHasLower = 1, kHasHigher = 2 };
+
+// Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners across
+// it may both be.
+template <class Cell>
+std::array<std::uint8_t, Cell::kCorners> marks_of(const std::int32_t* points, const double* heights) {
+    std::array<double, Cell::kCorners> height;
+    for (std::size_t n = 0; n < Cell::kCorners; ++n) height[n] = heights[points[n]];
+    std::array<std::uint8_t, Cell::kCorners> marks{};
+    for (const auto& [a, b] : Cell::kShape.ends) {
+        const bool above = (height[a] > height[b]) | ((height[a] == height[b]) & (points[a] > points[b]));
+        marks[a] |= static_cast<std::uint8_t>(kHasHigher - above);
+        marks[b] |= static_cast<std::uint8_t>(kHasLower + above);
+    }
+    return marks;
+}
+
+// Counts the cells at every point and marks the extrema; returns how many there are. Cells that name a point twice do
+// not count: they are never removed.
+template <class Cell>
+std::size_t count_cells(const Gluing<Cell>& gluing, const Array<double>& heights, Blocks<Cell>& blocks,
+                        Remaining<Cell>& remaining, int threads) {
+    struct Elsewhere {
+        std::int32_t point, cell;
+        std::uint8_t marks;
+    };
+    std::vector<std::uint8_t> marks(heights.size());
+    remaining.points().resize(heights.size());
+    const auto add = [&](std::int32_t point, std::int32_t cell, std::uint8_t seen) {
+        Touching& touching = remaining.at(point);
+        ++touching.count;
+        touching.survivor ^= cell;
+        marks[static_cast<std::size_t>(point)] |= seen;
+    };
+    std::vector<std::vector<Elsewhere>> elsewhere(blocks.size());
+    parallel_for(threads, blocks.size(), [&](std::size_t block) {
+        for (std::size_t cell = blocks.first_cell(block); cell < blocks.first_cell(block + 1); ++cell) {
+            if (remaining.loose(cell)) continue;
+            const std::int32_t* points = gluing.record(cell);
+            const auto seen = marks_of<Cell>(points, heights.data());
+            const auto id = static_cast<std::int32_t>(cell);
+            for (std::size_t n = 0; n < Cell::kCorners; ++n) {
+                if (blocks.has(block, points[n]))
+                    add(points[n], id, seen[n]);
+                else
+                    elsewhere[block].push_back({points[n], id, seen[n]});
+            }
+        }
+    });
+    for (const auto& of_block : elsewhere) {
+        for (const Elsewhere& each : of_block) {
+            add(each.point, each.cell, each.marks);
+            blocks.share(each.point);
+        }
+    }
+    std::size_t extrema = 0;
+    for (std::size_t point = 0; point < heights.size(); ++point) {
+        Touching& touching = remaining.points()[point];
+        if (touching.count == 0 || marks[point] == (kHasLower | kHasHigher)) continue;
+        touching.extremum = 1;
+        ++extrema;
+    }
+    return extrema;
+}
+
+}  // namespace isocore::thinning

@@ -1,0 +1,20 @@
+// ordering.hpp - Points in an order that keeps neighbours close in memory, since memory bounds both the thinning and
+// the walk: along a Morton curve through their places. Cells follow their lowest points.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "common/array.hpp"
+
+namespace isocore::thinning {
+
+struct PointOrder {
+    Array<std::int32_t> original;  // by new number: the mesh's
+    Array<std::int32_t> number;    // by the mesh's number: the new one
+};
+
+// points: x, y, z of each of `size`. The same for any number of threads.
+PointOrder order_points(const double* points, std::size_t size, int threads);
+
+}  // namespace isocore::thinning
