@@ -15,11 +15,8 @@ import pytest
 import isocore
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
-from isocore.extraction import Outlook
-from isocore.job import Options
-from isocore.methods.index_file import save_index
 from isocore.methods.mesh_index import MeshIndex
-from isocore.methods.thinning import build_index, prepare_thinning, ready_index
+from isocore.methods.thinning import build_index, ready_index
 
 STUB = ast.parse((Path(isocore.__file__).parent / "_kernels.pyi").read_text(encoding="utf-8"))
 
