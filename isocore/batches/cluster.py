@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import guarded
@@ -55,7 +56,9 @@ def _anywhere(job: Job) -> Job:
         for target in job.targets
     )
     ambiguities = None if job.ambiguities is None else job.ambiguities.absolute()
-    return replace(job, source=job.source.absolute(), targets=targets, ambiguities=ambiguities)
+    carry = (str(path.absolute()) if (path := Path(name)).is_file() else name for name in job.read_options.carry)
+    reading = replace(job.read_options, carry=tuple(carry))
+    return replace(job, source=job.source.absolute(), targets=targets, ambiguities=ambiguities, read_options=reading)
 
 
 def _as_named(job: Job, runs: list[RunReport]) -> list[RunReport]:

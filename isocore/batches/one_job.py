@@ -10,7 +10,7 @@ from isocore.errors import OutputError, told
 from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
-from isocore.readers import content_bytes
+from isocore.readers import carried_files, content_bytes
 from isocore.report.copies_found import file_copies
 from isocore.report.record import RunReport
 
@@ -18,7 +18,8 @@ from isocore.report.record import RunReport
 def estimate(job: Job) -> int:
     """Bytes that a job may take at its peak."""
     copied = 2 if job.read_options.ignore else 1  # 8 bits become the 32 of a type that has NaN
-    return estimated_bytes(copied * content_bytes(job.source, job.read_options.step))
+    beside = sum(map(content_bytes, carried_files(job.read_options)))
+    return estimated_bytes(copied * content_bytes(job.source, job.read_options.step) + beside)
 
 
 def guarded(job: Job) -> Iterator[RunReport]:

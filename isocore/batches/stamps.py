@@ -98,7 +98,9 @@ def options_hash(job: Job, target: Target) -> str:
     """Of what is asked of this output and can change its bytes; threads cannot."""
     asked = {item.name: getattr(job, item.name) for item in fields(Job) if item.name not in UNHASHED}
     asked["options"] = asdict(replace(job.options, threads=1, normals=job.normals))
-    asked["read_options"] = asdict(job.read_options)
+    files = set(map(str, carried_files(job.read_options)))  # whose content is hashed; of where they lie only the name
+    carry = [Path(name).name if str(Path(name)) in files else name for name in job.read_options.carry]
+    asked["read_options"] = asdict(job.read_options) | {"carry": carry}
     asked["choice"] = target.choice
     asked["beside"] = [one.choice for one in job.targets] if job.together else []
     return sha256(json.dumps(asked, default=str).encode()).hexdigest()
