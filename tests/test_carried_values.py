@@ -134,6 +134,19 @@ def test_simplification_keeps_each_vertex_and_its_values(tmp_path, kind):
     assert [known[bytes(vertex)] for vertex in fewer.vertices] == fewer.fields["heat"].tolist()
 
 
+def test_pieces_that_stay_keep_their_values():
+    """The second of two, so that those of the first go."""
+    index = np.stack(np.meshgrid(*[np.arange(N)] * 3, indexing="ij"), axis=-1)
+    small, large = (np.linalg.norm(index - middle, axis=-1) for middle in ([4, 4, 4], [12, 12, 12]))
+    samples = np.asfortranarray(-np.minimum(small / 2, large / 6))
+    volume = Volume.from_array(samples, affine=AFFINE)
+    heat = linear(index @ AFFINE[:3, :3].T + AFFINE[:3, 3])
+    surface = isocore.extract(volume, -1, backend="mc", keep_largest=1, carry={"heat": heat})
+    whole = isocore.extract(volume, -1, backend="mc")
+    assert 0 < len(surface.vertices) < len(whole.vertices)
+    np.testing.assert_allclose(surface.fields["heat"], linear(surface.vertices), rtol=0, atol=5e-5)
+
+
 def test_the_contoured_field_carried_along_is_the_isovalue():
     """The values know of the same parameter as the place."""
     volume, _ = ball()
