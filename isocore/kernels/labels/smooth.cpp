@@ -249,23 +249,28 @@ class EdgeVertices {
 class CurveVertices {
   public:
     explicit CurveVertices(const LabelMesh& mesh) {
-        std::vector<std::array<std::uint32_t, 2>> pairs;
-        for (std::size_t n = 0; n < mesh.curves.size(); n += 2) {
-            const auto face = static_cast<std::uint32_t>(mesh.curves[n]),
-                       cell = static_cast<std::uint32_t>(mesh.curves[n + 1]);
-            pairs.push_back({face, cell});
-            if (!(mesh.elements[cell] & kStays)) pairs.push_back({cell, face});
-        }
-        std::sort(pairs.begin(), pairs.end());
-        for (const auto& [own, neighbour] : pairs) {
-            if (vertex_.empty() || vertex_.back() != own) {
-                vertex_.push_back(own);
-                element_.push_back(mesh.elements[own]);
-                start_.push_back(neighbours_.size());
+        if (mesh.curves.empty()) return;
+        std::vector<std::uint32_t> place(mesh.elements.size() + 1, 0);  // of each vertex: where its neighbours begin
+        const auto each = [&](const auto& visit) {
+            for (std::size_t n = 0; n < mesh.curves.size(); n += 2) {
+                const auto face = static_cast<std::uint32_t>(mesh.curves[n]),
+                           cell = static_cast<std::uint32_t>(mesh.curves[n + 1]);
+                visit(face, cell);
+                if (!(mesh.elements[cell] & kStays)) visit(cell, face);
             }
-            neighbours_.push_back(neighbour);
+        };
+        each([&](std::uint32_t own, std::uint32_t) { ++place[own + 1]; });
+        for (std::uint32_t v = 0; v < mesh.elements.size(); ++v) {
+            if (place[v + 1] > 0) {
+                vertex_.push_back(v);
+                element_.push_back(mesh.elements[v]);
+                start_.push_back(place[v]);
+            }
+            place[v + 1] += place[v];
         }
-        start_.push_back(neighbours_.size());
+        start_.push_back(place.back());
+        neighbours_.resize(place.back());
+        each([&](std::uint32_t own, std::uint32_t neighbour) { neighbours_[place[own]++] = neighbour; });
     }
 
     void step(const Places& from, Places& to, float factor, int threads) const {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -64,7 +65,7 @@ Array<double> errors_of(const Facts& facts, simplification::Deviation SheetFacts
 class LabelSurfaces {
   public:
     LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks)
-        : mesh_(std::move(mesh)), ranks_(ranks), solids_(mesh_, ranks) {}
+        : mesh_(std::move(mesh)), ranks_(ranks) {}
 
     std::size_t vertices() const { return mesh_.elements.size(); }
     std::size_t triangles() const { return mesh_.sides.size() / 2; }
@@ -80,7 +81,8 @@ class LabelSurfaces {
         {
             const nb::gil_scoped_release unlocked;
             const std::lock_guard<std::mutex> alone(one_at_a_time_);
-            solid = solids_.solid(mesh_, rank);
+            if (!solids_) solids_.emplace(mesh_, ranks_);
+            solid = solids_->solid(mesh_, rank);
         }
         return label_solid(to_numpy(std::move(solid.vertices), 3), to_numpy(std::move(solid.triangles), 3),
                            to_numpy(std::move(solid.shared)));
@@ -101,7 +103,7 @@ class LabelSurfaces {
             simplification::Simplified<float> fewer = simplification::simplify(arrays, arrays, options);
             facts = std::move(fewer.facts);
             labels::replace(mesh_, std::move(fewer.vertices), std::move(fewer.triangles), fewer.kept, fewer.left);
-            solids_ = labels::Solids(mesh_, ranks_);
+            solids_.reset();
         }
         return simplified_labels(to_numpy(std::move(sheets.pairs), 2), to_numpy(std::move(sheets.vertices)),
                                  to_numpy(std::move(sheets.triangles)), before, triangles(), facts.collapses,
@@ -123,7 +125,7 @@ class LabelSurfaces {
   private:
     labels::LabelMesh mesh_;
     std::size_t ranks_;
-    labels::Solids solids_;
+    std::optional<labels::Solids> solids_;  // made when the first label is asked for
     std::mutex one_at_a_time_;
 };
 
