@@ -83,6 +83,24 @@ class Target:
             object.__setattr__(self, "choice", parse_choice(self.choice))
 
 
+class ReadAhead:
+    """A field that was read when its job was planned, and the seconds that it took: handed out once.
+
+    Another process, to which a job is sent, reads for itself.
+    """
+
+    def __init__(self, field: Volume | None = None, seconds: float = 0.0) -> None:
+        self._field, self.seconds = field, seconds
+
+    def take(self) -> Volume | None:
+        """The field, which is then no longer kept here."""
+        taken, self._field = self._field, None
+        return taken
+
+    def __reduce__(self) -> tuple[type[ReadAhead], tuple[()]]:
+        return ReadAhead, ()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
     """What is asked of one file.
@@ -105,6 +123,7 @@ class Job:
         both, also on a cluster; `convert` alone always converts.
     page_triangles: of the copy of each surface that its report holds for a page; 0 for none.
     refusal: why the source is not even tried, such as a folder that cannot be searched; the job fails with it.
+    read_ahead: the source's field, where planning had to read it.
     """
 
     source: Path
@@ -132,6 +151,7 @@ class Job:
     page_triangles: int = 0
     still: Still = field(default_factory=Still)
     refusal: str = ""
+    read_ahead: ReadAhead | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         if isinstance(self.offset, str):

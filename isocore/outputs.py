@@ -108,8 +108,7 @@ class Sink:
         """Write what waits; None where nothing does."""
         if not self._parts:
             return None, None
-        whole = joined(self._parts)
-        self._parts.clear()
+        whole = joined(self._parts)  # which leaves none
         colors = colors_of(whole, self._job)
         return self._written(whole, self._job.targets[0]), colors
 

@@ -67,7 +67,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
     done = 0
     try:
         with timer("read"):
-            source = _read(job)
+            source = _read(job, timer)
             spread = histogram(source, threads=threads)
             offset = offset_of(source, job.offset)
             source = moved_field(source if job.holds_fields else replace(source, carried=()), offset)
@@ -159,10 +159,13 @@ def requirements_checked(run: RunReport, job: Job) -> RunReport:
     return run if run.surface is None else replace(run, missed=missed(run.surface, job.require, job.max_triangles))
 
 
-def _read(job: Job) -> Field:
+def _read(job: Job, timer: Timer) -> Field:
     if job.refusal:
         raise InputError(job.refusal)
-    source = read(job.source, job.read_options)
+    known = None if job.read_ahead is None else job.read_ahead.take()
+    if job.read_ahead is not None and known is not None:
+        timer.add(job.read_ahead.seconds, "read")
+    source = read(job.source, job.read_options) if known is None else known
     if isinstance(source, Volume):
         return job.place(source)
     if job.space != "native":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -148,24 +148,34 @@ def _frozen(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return array
 
 
-def joined(surfaces: Sequence[Surface]) -> Surface:
-    """One surface of several, which share frame, unit, offset and fields and each have parts. At least one."""
+def joined(surfaces: list[Surface]) -> Surface:
+    """One surface of several, which share frame, unit, offset and fields and each have parts. At least one.
+
+    The list is emptied on the way, so that nothing is in memory twice.
+    """
     first = surfaces[0]
-    starts = np.cumsum([0, *(len(surface.vertices) for surface in surfaces[:-1])], dtype=np.int64)
-    if sum(len(surface.vertices) for surface in surfaces) > np.iinfo(np.int32).max:
+    count = sum(len(surface.vertices) for surface in surfaces)
+    if count > np.iinfo(np.int32).max:
         raise ValueError("has more vertices than an int32 can name")
-    triangles = [surface.triangles + np.int32(start) for surface, start in zip(surfaces, starts, strict=True)]
-    normals = [surface.normals for surface in surfaces if surface.normals is not None]
-    return Surface(
-        np.concatenate([surface.vertices for surface in surfaces]),
-        np.concatenate(triangles),
-        np.concatenate(normals) if len(normals) == len(surfaces) else None,
-        first.space,
-        first.unit,
-        first.offset,
-        tuple(part for surface in surfaces for part in surface.parts),
-        {name: np.concatenate([surface.fields[name] for surface in surfaces]) for name in first.fields},
-    )
+    vertices = np.empty((count, 3), np.result_type(*(surface.vertices for surface in surfaces)))
+    triangles = np.empty((sum(len(surface.triangles) for surface in surfaces), 3), np.int32)
+    normals = None if any(surface.normals is None for surface in surfaces) else np.empty((count, 3), np.float32)
+    values = {name: np.empty((count, *first.fields[name].shape[1:]), first.fields[name].dtype) for name in first.fields}
+    parts: list[Part] = []
+    surfaces.reverse()
+    at = at_triangle = 0
+    while surfaces:
+        surface = surfaces.pop()
+        own = slice(at, at + len(surface.vertices))
+        vertices[own] = surface.vertices
+        if normals is not None:
+            normals[own] = surface.normals
+        for name, array in values.items():
+            array[own] = surface.fields[name]
+        np.add(surface.triangles, np.int32(at), out=triangles[at_triangle : at_triangle + len(surface.triangles)])
+        at, at_triangle = own.stop, at_triangle + len(surface.triangles)
+        parts += surface.parts
+    return Surface(vertices, triangles, normals, first.space, first.unit, first.offset, tuple(parts), values)
 
 
 def place_fresh(

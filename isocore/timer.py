@@ -26,6 +26,10 @@ class Timer:
         finally:
             self._seconds[stage] = self._seconds.get(stage, 0.0) + (perf_counter() - start)
 
+    def add(self, seconds: float, stage: Stage) -> None:
+        """Count seconds that a stage took before there was this timer."""
+        self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
+
     def move(self, seconds: float, from_: Stage, to: Stage) -> None:
         """Count seconds of one stage for another."""
         self._seconds[from_] = self._seconds.get(from_, 0.0) - seconds

@@ -7,8 +7,10 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from time import perf_counter
 
 from isocore.errors import IsocoreError
+from isocore.job import ReadAhead
 from isocore.labels import Label, Labels
 from isocore.readers import read, suffix_of
 from isocore.readers.label_names import names_inside
@@ -30,33 +32,38 @@ class LabelRequest:
     names: dict[int, LabelName] | None = None
 
 
-def label_choices(path: Path, request: LabelRequest, options: ReadOptions) -> tuple[Label, ...]:
+def label_choices(
+    path: Path, request: LabelRequest, options: ReadOptions
+) -> tuple[tuple[Label, ...], ReadAhead | None]:
     """The labels of `path` that are asked for, in ascending order for `all`, else as they were written.
 
-    A file that cannot be read, or holds no labels, gives one choice, of the background: converting it will say why.
+    And the volume, where it had to be read for that. A file that cannot be read, or holds no labels, gives one choice,
+    of the background: converting it will say why.
     """
-    values = request.labels.values
+    values, ahead = request.labels.values, None
     if values is None:
-        values = _all_labels(path, request.background, options)
+        values, ahead = _all_labels(path, request.background, options)
     known = names_inside(path, suffix_of(path) or "", options.volume) | (request.names or {})
     choices = []
     for value in values:
         label = known.get(value)
         choices.append(Label(value, label.name if label else "", (label.colour if label else None) or palette(value)))
-    return _with_file_names(choices or [Label(request.background)])
+    return _with_file_names(choices or [Label(request.background)]), ahead
 
 
-def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[int, ...]:
+def _all_labels(path: Path, background: int, options: ReadOptions) -> tuple[tuple[int, ...], ReadAhead | None]:
     from isocore.methods.label_map import take_census
 
+    start = perf_counter()
     try:
         field = read(path, options)
+        seconds = perf_counter() - start
         if not isinstance(field, Volume):
-            return ()
+            return (), None
         values = take_census(field, background).values
     except (IsocoreError, MemoryError):
-        return ()
-    return tuple(int(value) for value in values if value != background)
+        return (), None
+    return tuple(int(value) for value in values if value != background), ReadAhead(field, seconds)
 
 
 def _with_file_names(choices: Iterable[Label]) -> tuple[Label, ...]:

@@ -25,7 +25,7 @@ from isocore.batches.places import Places
 from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
 from isocore.errors import OptionError, told
-from isocore.job import STDOUT, Job, Target
+from isocore.job import STDOUT, Job, ReadAhead, Target
 from isocore.readers import ReadOptions, carried_files, count_volumes, files_of, times_of
 
 #: An option that names a file, and the file.
@@ -59,7 +59,6 @@ def plan(
     Raises OptionError where an output or a file of `written` would overwrite an input, a file that belongs to one,
     or each other; where names alone are the trouble the message says which would do.
     """
-    asked = _Asked(choices, labels)
     several_allowed = merge or labels is not None
     if naming.output is not None and (len(inputs) != 1 or (len(choices) != 1 and not several_allowed)):
         advice = "; use -d, or --merge-isovalues" if len(inputs) == 1 else "; use -d"
@@ -73,6 +72,7 @@ def plan(
     patterns = [(item, one) for item in inputs for one in _per_step(item, pattern, volumes, steps)]
     if naming.output is not None and len(patterns) > 1:
         raise OptionError(f"-o {naming.output}: is one file, the input has {len(patterns):,} surfaces; use -d")
+    asked = _Asked(choices, labels, keep=len(patterns) == 1)
     jobs = [_job(item, asked, one, naming) for item, one in patterns]
     try:
         refuse_overwriting(jobs, written=written, read=read)
@@ -120,8 +120,10 @@ def _per_volume(item: Input, pattern: Job, volumes: int | str | None) -> list[Jo
 class _Asked:
     """What is asked of each input: the same isovalues of all, or the labels that each one has."""
 
-    def __init__(self, choices: tuple[Choice, ...], labels: LabelRequest | None) -> None:
-        self._choices, self._labels = choices, labels
+    def __init__(self, choices: tuple[Choice, ...], labels: LabelRequest | None, *, keep: bool) -> None:
+        """keep: whether what is read for that is kept for converting it, which is too much for many inputs."""
+        self._choices, self._labels, self._keep = choices, labels, keep
+        self.read_ahead: ReadAhead | None = None
         self._known: dict[tuple[Path, int | None, int | None], tuple[Choice, ...]] = {}
 
     def of(self, path: Path, options: ReadOptions) -> tuple[Choice, ...]:
@@ -130,7 +132,8 @@ class _Asked:
             return self._choices
         key = path, options.volume, options.step
         if key not in self._known:
-            self._known[key] = label_choices(path, self._labels, options)
+            self._known[key], ahead = label_choices(path, self._labels, options)
+            self.read_ahead = ahead if self._keep else None
         return self._known[key]
 
 
@@ -151,7 +154,7 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
     targets = tuple(
         Target(choice, output_of(item, choice, pattern, naming, several=several), picture) for choice, picture in drawn
     )
-    return replace(pattern, source=item.path, targets=targets)
+    return replace(pattern, source=item.path, targets=targets, read_ahead=asked.read_ahead)
 
 
 def _carrying(item: Input, options: ReadOptions) -> ReadOptions:
