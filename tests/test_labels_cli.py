@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,11 @@ from click.testing import CliRunner, Result
 from isocore.cli.convert import convert
 from nibabel.nifti1 import Nifti1Extension
 
+from isocore.batches.label_targets import LabelRequest
+from isocore.batches.plan import Naming, find_inputs, plan
+from isocore.job import Job
+from isocore.labels import parse_labels
+from isocore.pipeline import convert as run_job
 from isocore.readers.label_tables import read_label_table
 
 LABELS = Path(__file__).resolve().parents[2] / "shared" / "data" / "labels"
@@ -316,3 +322,18 @@ def test_a_number_of_triangles_is_that_of_all_labels_together(tmp_path: Path) ->
     assert 60 < both < 60 + 30  # what lies between the two is in both
     bounded = run(*arguments, "--max-error", "0.01")
     assert bounded.exit_code == 0 and "--triangles 60" in bounded.stderr and "--max-error 0.01" in bounded.stderr
+
+
+def test_a_map_is_read_once(tmp_path: Path) -> None:
+    """What planning reads to know the labels is converted, even if the file is gone; a job that is sent reads again."""
+    source = write_map(tmp_path / "map.nii", two_boxes())
+    request = LabelRequest(labels=parse_labels("all"))
+    pattern = Job(source=Path(), targets=())
+    jobs = [plan(find_inputs([source]), (), pattern, Naming(output_dir=tmp_path), labels=request)[0] for _ in range(2)]
+    sent = pickle.loads(pickle.dumps(jobs[0]))
+    source.unlink()
+    runs = list(run_job(jobs[1]))
+    assert [one.status for one in runs] == ["done", "done"]
+    assert runs[0].seconds is not None and runs[0].seconds.read > 0
+    assert [one.status for one in run_job(jobs[1])] == ["failed", "failed"]  # it is not kept for longer
+    assert [one.status for one in run_job(sent)] == ["failed", "failed"]
