@@ -27,7 +27,7 @@ from isocore.whole_file import whole_file
 #: The last three change what else is made, and are asked about one by one; whatever else a job may be asked for counts.
 UNHASHED = frozenset(
     ("source", "targets", "require", "max_triangles", "if_changed", "force", "page_triangles", "refusal", "still")
-) | {"ambiguities", "reference", "self_intersections"}
+) | {"read_ahead", "ambiguities", "reference", "self_intersections"}
 #: Bytes of a file's name beyond which file systems refuse it.
 _LONGEST_NAME = 255
 
