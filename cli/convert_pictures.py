@@ -78,10 +78,8 @@ def check_picture(context: click.Context, template: str | None) -> None:
                 option = name.replace("_", "-")
                 raise click.UsageError(f"--{option}: says how a picture is drawn; add --picture FILE.png")
         return
-    if not template.lower().endswith(".png"):
-        raise click.UsageError(f"--picture {template}: pictures are PNG; let the name end in .png")
-    from isocore.batches.naming import check_template  # late: readers bring numpy
+    from isocore.batches.naming import check_picture_template  # late: readers bring numpy
     from isocore.pictures import check_installed
 
-    check_template(template, "--picture")
+    check_picture_template(template)
     check_installed()

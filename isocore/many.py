@@ -12,6 +12,7 @@ from typing import Any, Literal, SupportsFloat, TypeAlias
 from isocore.api import Isovalue, Topology, arguments_named, at_least_one, choices_of, options_of
 from isocore.backends import check_options
 from isocore.batches.label_targets import LabelRequest
+from isocore.batches.naming import check_picture_template
 from isocore.batches.plan import Naming, check_template, find_inputs, plan
 from isocore.batches.run import Batch, run_jobs
 from isocore.choices import Auto, Format, distinct
@@ -21,9 +22,11 @@ from isocore.errors import OptionError
 from isocore.job import Job, Options
 from isocore.labels import parse_labels
 from isocore.memory import free_bytes, processors
+from isocore.pictures import check_installed
 from isocore.readers.options import ReadOptions
 from isocore.report import MESH_BYTES, BatchReport, RunReport, renderer_for, save_report
 from isocore.report.copies_found import working_folder
+from isocore.views import Still, parse_views
 from isocore.volume import Space
 
 Name: TypeAlias = os.PathLike[str] | str
@@ -38,6 +41,8 @@ def convert_files(
     background: int = 0,
     format: Format = "ply",
     name: str | None = None,
+    picture: str | None = None,
+    view: str = "corner",
     backend: str | None = None,
     space: Space = "native",
     volume: int | Literal["all"] | None = None,
@@ -80,6 +85,7 @@ def convert_files(
         shares the processors among the inputs at once.
     read_options: what files do not tell themselves; volume: which of a 4-D input, or "all".
     jobs: inputs at once, each in a process of its own; timeout: seconds for each.
+    picture: a template as name, with its suffix .png, for a still of each surface, seen from view.
     reports: files to write the report to, each in the format of its suffix.
     carry: other fields by name, "all" of them, or files of volumes on the same grid, for the vertices of each surface;
         colormap, color_by, color_range: how these colour GLB and PLY.
@@ -113,8 +119,12 @@ def convert_files(
             reference=reference,
             require=tuple(require),
             if_changed=if_changed,
+            still=Still(views=parse_views(view)),
         )
-        naming = Naming(output_dir=None if output_dir is None else Path(output_dir), template=name)
+        naming = Naming(output_dir=None if output_dir is None else Path(output_dir), template=name, picture=picture)
+        if picture is not None:
+            check_picture_template(picture)
+            check_installed()
         wanted = None if labels is None else LabelRequest(labels=parse_labels(labels), background=background)
         paths = [Path(one) for one in _several(inputs)]
         planned = _planned(paths, isovalues, pattern, naming, volume, wanted, merge_isovalues, saved)

@@ -81,7 +81,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
     "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
     "api": NOUNS | FIELD_ROOMS | {"backends", "pieces"},
-    "many": NOUNS | {"api", "backends", "batches", "copies", "memory", "readers/options", "report"},
+    "many": NOUNS | {"api", "backends", "batches", "copies", "memory", "pictures", "readers/options", "report"},
     "exchange": {"errors"},
     "describe": NOUNS | FIELD_ROOMS | {"readers"},
     "batches": set(),

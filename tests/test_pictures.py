@@ -15,6 +15,7 @@ from png import read_png
 from shapes import SAMPLES
 from small_files import ball, write_nifti
 
+import isocore
 from isocore import pictures
 from isocore.errors import FieldError, OptionError
 from isocore.surface import Part, Surface
@@ -213,3 +214,15 @@ def test_without_embreex_one_line_says_how_to_get_it(tmp_path: Path, monkeypatch
     assert result.exit_code != 0 and not list(tmp_path.iterdir())
     lines = [line for line in f"{result.output}{result.exception or ''}".splitlines() if line]
     assert any("--picture: needs embreex; pip install 'isocore[picture]'" in line for line in lines)
+
+
+@pytest.mark.usefixtures("embree")
+def test_pictures_come_of_a_batch_from_python(tmp_path: Path) -> None:
+    """With the fields of names."""
+    write_nifti(tmp_path / "ball.nii", ball(10))
+    place = str(tmp_path / "{stem}_{isovalue}.png")
+    isocore.convert_files(tmp_path / "ball.nii", tmp_path, isovalues=[50, 60], picture=place, view="A,L")
+    for name in ("ball_50.png", "ball_60.png"):
+        assert share(read_png(tmp_path / name)) > 0.3
+    with pytest.raises(OptionError, match=r"let the name end in \.png"):
+        isocore.convert_files(tmp_path / "ball.nii", tmp_path, picture="a.jpg")

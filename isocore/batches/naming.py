@@ -58,6 +58,13 @@ def check_template(template: str, option: str = "--name") -> None:
             raise OptionError(f"{option} {template}: {given} asks for a format that names do not take; {advice}")
 
 
+def check_picture_template(template: str) -> None:
+    """Refuse a template of --picture that is no PNG's, or names no field that there is."""
+    if not template.lower().endswith(".png"):
+        raise OptionError(f"--picture {template}: pictures are PNG; let the name end in .png")
+    check_template(template, "--picture")
+
+
 def output_of(item: Input, choice: Choice, pattern: Job, naming: Naming, *, several: bool) -> Path:
     """Where one surface goes. several: an input has more than one isovalue."""
     if naming.output is not None:

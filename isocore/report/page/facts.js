@@ -6,7 +6,7 @@ function drawBars(run) {
     ["triangles", dig(run, "surface.triangles"), dig(run, "reference.triangles"), whole],
     ["seconds", ownSeconds(run), dig(run, "reference.seconds"), short(3)],
   ];
-  for (const [title, ours, reference, show] of pairs) {
+  for (const [title, ours, reference, show] of run.reference ? pairs : []) {
     const top = Math.max(ours ?? 0, reference ?? 0);
     if (!top) continue;
     const names = [[`${title}`, ours, "ours"], [`${dig(run, "reference.name") ?? "reference"}`, reference, ""]];

@@ -8,7 +8,7 @@ function pick(run) {
   picked = run;
   for (const [other, row] of rows) row.setAttribute("aria-selected", other === run);
   at("#name").textContent = runs.length === 1 && run.output === "-" ? run.source : `${fileName(run.source)} → ${fileName(run.output)}`;
-  at("#message").textContent = [run.message, ...run.missed.map((miss) => `misses ${miss}`), ...run.warnings].join(" · ");
+  at("#message").textContent = [run.message, ...run.missed.map((miss) => `misses ${miss}`), ...run.warnings].filter(Boolean).join(" · ");
   at("#message").className = run.status === "failed" || run.missed.length ? "bad" : "warn";
   if (run.mesh) offerSides(run);
   if (!shown.has(run)) show([run]);

@@ -29,8 +29,8 @@ function startViewer() {
   viewer.camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
   viewer.camera.up.set(0, 0, 1);
   viewer.scene.add(new THREE.AmbientLight(0xffffff, 0.55));
-  // From above on the left, from the right, and a rim from behind: placed anew for every way of looking.
-  viewer.lamps = [[-1, 1.3, 1.2, 2.1], [1.5, 0.1, 0.8, 0.75], [0.3, 0.8, -1.5, 0.6]].map(([x, y, z, strength]) => {
+  // From above on the left, and fainter from the right: placed anew for every way of looking.
+  viewer.lamps = [[-1, 1.3, 1.2, 2.3], [1.5, 0.1, 0.8, 0.8]].map(([x, y, z, strength]) => {
     const lamp = new THREE.DirectionalLight(0xffffff, strength);
     viewer.scene.add(lamp);
     return [lamp, [x, y, z]];
@@ -70,7 +70,7 @@ function meshOf(run) {
   const colors = colorsOf(run);
   if (colors) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3));
   const surface = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({
-    vertexColors: colors !== null, roughness: 0.5, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    vertexColors: colors !== null, roughness: 0.7, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
   }));
   const wires = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ color: 0x10161d, roughness: 1, wireframe: true, transparent: true, opacity: 0.55 }));
   const made = { surface, wires, size };
