@@ -7,6 +7,7 @@ methods/, one row below; the contract tests find it by themselves.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from typing import Any
@@ -37,8 +38,10 @@ __all__ = [
 
 #: The backend that all others are compared with.
 REFERENCE = "mc"
-#: From so many isovalues of a mesh on, thinning it first is quicker than as many full scans.
-REPAYS_THINNING = 200
+#: Milliseconds of one processor per million cells: to thin them, and to look at them all for one isovalue.
+_THINNING, _LOOKING = 158.0, 1.93
+#: By how many milliseconds a walk draws slower than a scan; with the surface, it grows like cells^(2/3), in millions.
+_WALKING = 1.08
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,17 +100,27 @@ LABELS = Backend(
 def default_backend(field_type: type, outlook: Outlook) -> tuple[str, str]:
     """The backend used when none is named, and why.
 
-    Volumes are climbed. Of a mesh, thinning pays for few isovalues only where its index lies beside: on tetrahedra from
-    6,000 to 6,000,000 it took 200 to 900 isovalues until thinning and its walks were quicker than as many full scans.
+    Volumes are climbed. Of a mesh, thinning pays for few isovalues only where its index lies beside.
     """
     if not issubclass(field_type, CellMesh):
         return "asc", "the default for volumes"
     if outlook.index is not None:
         return "thinning", "the index beside the mesh is used"
     asked = f"{outlook.isovalues:,} isovalue" + "s" * (outlook.isovalues != 1)
-    if outlook.isovalues < REPAYS_THINNING:
+    if outlook.isovalues < repays_thinning(outlook.cells):
         return "mc", f"a full scan, since {asked} would not repay thinning and no index lies beside the mesh"
     return "thinning", f"{asked} repay thinning"
+
+
+def repays_thinning(cells: int) -> float:
+    """From how many isovalues on thinning a mesh and walking through it is quicker than as many full scans.
+
+    Fitted to what tests/bench/repays.py measures on smooth tetrahedra from 6,000 to 6,000,000: a walk saves the look at
+    all cells, but draws its own slower than a scan. Infinite for small meshes, where it saves nothing.
+    """
+    millions = cells / 1e6
+    saved = _LOOKING * millions - _WALKING * millions ** (2 / 3)
+    return _THINNING * millions / saved if saved > 0 else math.inf
 
 
 def backend_for(job: Job, field_type: type, outlook: Outlook) -> tuple[str, str]:

@@ -22,11 +22,13 @@ class Outlook:
     """What is known when a method prepares, besides what was asked. It decides advice and what is worth preparing.
 
     isovalues: how many will be asked for, 0 where that is not known.
+    cells: of the mesh, 0 where the field is none.
     index: the thinning index that lies beside a mesh, used where it matches.
     named: whether the user named the method; against the program's own choice there is no advice.
     """
 
     isovalues: int = 0
+    cells: int = 0
     index: Path | None = None
     named: bool = True
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from isocore.asked import asked_of
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
+from isocore.cell_mesh import CellMesh
 from isocore.errors import FieldError, InputError, IsocoreError, about
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
@@ -76,7 +77,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
         known = FieldFacts.of(source, spread)
         check_pictures(job, known.space)
         labels = label_count(source, spread)
-        outlook = _outlook(job)
+        outlook = replace(_outlook(job), cells=source.cells if isinstance(source, CellMesh) else 0)
         backend, why = backend_for(job, type(source), outlook)
         with timer("prepare"):
             extract = prepare(source, backend, replace(job.options, normals=job.normals), outlook)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,9 @@ from isocore.cli.index import index
 from shapes import SAMPLES
 from small_files import ball, write_nifti
 
-from isocore.backends import REPAYS_THINNING
+from isocore.backends import default_backend, repays_thinning
+from isocore.cell_mesh import CellMesh
+from isocore.extraction import Outlook
 
 
 @pytest.fixture
@@ -56,14 +59,24 @@ def test_an_index_beside_the_mesh_is_used(mesh: Path) -> None:
     assert record["backend"] == "thinning" and "is damaged" in warning and warning.endswith("thinned anew")
 
 
-def test_many_isovalues_repay_thinning(mesh: Path) -> None:
-    """One less does not."""
-    many = _records(mesh, "-i", f"-0.2:0.2:{REPAYS_THINNING}")
-    assert {(record["backend"], record["backend_chosen"]) for record in many} == {
-        ("thinning", f"{REPAYS_THINNING} isovalues repay thinning")
-    }
-    assert not any(record["warnings"] for record in many)
-    assert _records(mesh, "-i", f"-0.2:0.2:{REPAYS_THINNING - 1}")[0]["backend"] == "mc"
+@pytest.mark.parametrize("cells", [1_000_000, 2_058_000, 6_000_000, 80_000_000])
+def test_many_isovalues_of_a_large_mesh_repay_thinning(cells: int) -> None:
+    """One less does not; and the larger the mesh, the sooner."""
+    enough = math.ceil(repays_thinning(cells))
+    assert 80 < enough < 200
+    assert repays_thinning(2 * cells) < repays_thinning(cells)
+    assert default_backend(CellMesh, Outlook(isovalues=enough, cells=cells)) == (
+        "thinning",
+        f"{enough} isovalues repay thinning",
+    )
+    assert default_backend(CellMesh, Outlook(isovalues=enough - 1, cells=cells))[0] == "mc"
+
+
+def test_no_number_of_isovalues_repays_thinning_a_small_mesh(mesh: Path) -> None:
+    """Looking at all of its cells takes no time to speak of."""
+    assert repays_thinning(80_000) == repays_thinning(0) == math.inf
+    many = _records(mesh, "-i", "-0.2:0.2:250")
+    assert {record["backend"] for record in many} == {"mc"}
 
 
 def test_a_named_method_is_taken_and_advised_on(mesh: Path) -> None:
