@@ -29,6 +29,8 @@ class Facets {
     std::size_t size() const { return size_; }
     void clear() { size_ = 0; }
     void add(const Spot& a, const Spot& b, const Spot& c);
+    // Up to eight at once, where a multiple of eight were added before: the first `count` lanes.
+    void add(const std::array<Vector<Floats>, 3>& corners, std::size_t count);
     void find_frames();
 
     // Writes to `out` the squared distance from each of `size` points to the nearest of the triangles from `first` to
@@ -91,6 +93,11 @@ inline void Facets::add(const Spot& a, const Spot& b, const Spot& c) {
     const std::array<const Spot*, 3> corners{&a, &b, &c};
     for (std::size_t n = 0; n < 9; ++n) columns_[kCornerA + n][size_] = (*corners[n / 3])[n % 3];
     ++size_;
+}
+
+inline void Facets::add(const std::array<Vector<Floats>, 3>& corners, std::size_t count) {
+    for (std::size_t n = 0; n < 9; ++n) corners[n / 3][n % 3].store(columns_[kCornerA + n].data() + size_);
+    size_ += count;
 }
 
 // Inline, as simplification calls it for a few points at a time.

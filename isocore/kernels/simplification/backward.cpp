@@ -7,8 +7,8 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr float kSmall = 4;             // cells: a longer triangle is halved before it is taken to pieces
-constexpr float kPiece = 0.65f;         // cells: the longest side of a piece
+constexpr float kSmall = 6;             // cells: a longer triangle is halved before it is taken to pieces
+constexpr float kPiece = 0.9f;          // cells: the longest side of a piece
 constexpr int kHalvings = 5;            // of a piece
 constexpr int kMostHalvings = 64;       // of all pieces of a triangle
 constexpr float kLeastMargin = 0.01f;   // cells
@@ -114,7 +114,8 @@ void Backward<Real>::take_facets(const Corners& triangle, Patch& near) {
         near.select(near, Box::around(triangle, margin));
     facets_.clear();
     if (near.size() > kMostTriangles) return;
-    for (std::size_t n = 0; n < near.size(); ++n) facets_.add(near.corner(n, 0), near.corner(n, 1), near.corner(n, 2));
+    for (std::size_t n = 0; n < near.size(); n += kLanes)
+        facets_.add({near.in_lanes(0, n), near.in_lanes(1, n), near.in_lanes(2, n)}, std::min(kLanes, near.size() - n));
     facets_.find_frames();
 }
 

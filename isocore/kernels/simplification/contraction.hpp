@@ -57,6 +57,7 @@ class Contraction {
         return false;
     }
     void gather_fans(std::int32_t vertex, std::int32_t target);
+    void fetch_target() const;
     bool are_allowed();
     bool are_apart();
     bool keeps_topology(const Star& star) const;

@@ -4,18 +4,12 @@
 #include <bit>
 #include <limits>
 
+#include "common/prefetch.hpp"
+
 namespace isocore::simplification {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-// Asks for memory that is looked at soon.
-template <class T>
-void prefetch([[maybe_unused]] const T* place) {
-#if defined(__GNUC__)
-    __builtin_prefetch(place);
-#endif
-}
-
 Floats size_of(const Floats& a) { return greatest(a, Floats(0.0f) - a); }
 Floats size_of(const Vector<Floats>& a) { return size_of(a[0]) + size_of(a[1]) + size_of(a[2]); }
 
@@ -76,12 +70,13 @@ void Crossings<Real>::find_triangles(const Star& star) {
         if (star.triangles[n] != kNone) seen_triangles_.add(star.triangles[n]);
     }
     triangles_.clear();
+    for (const std::int32_t cube : cubes_) grid_.fetch(cube);
     for (const std::int32_t cube : cubes_) {
         if (!seen_cubes_.add(cube)) continue;
         grid_.each_in(cube, [&](std::int32_t triangle) {
             if (!seen_triangles_.add(triangle)) return;
             triangles_.push_back(triangle);
-            prefetch(mesh_.triangles.data() + triangle);
+            ISOCORE_PREFETCH(mesh_.triangles.data() + triangle);
         });
     }
     for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
@@ -91,7 +86,7 @@ void Crossings<Real>::find_triangles(const Star& star) {
     }
     for (const std::int32_t triangle : triangles_) {
         for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)
-            prefetch(mesh_.places.data() + corner);
+            ISOCORE_PREFETCH(mesh_.places.data() + corner);
     }
 }
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <type_traits>
 #include <utility>
+
+#include "common/prefetch.hpp"
 
 namespace isocore::simplification {
 
@@ -37,26 +40,38 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
         high[a] = cell(box.high[a]);
     }
     size_ = 0;
+    runs_.clear();
     reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
+        runs_.push_back({first, end});
+        ISOCORE_PREFETCH(reference.corners(reference.entry(first)));
+        ISOCORE_PREFETCH(reference.corners(reference.entry(end - 1)));
+    });
+    for (const auto& [first, end] : runs_) {
+        for (std::uint32_t entry = first; entry < end; ++entry)
+            ISOCORE_PREFETCH(reference.place(reference.corners(reference.entry(entry))[1]));
+    }
+    for (const auto& [first, end] : runs_) {
         if (size_ + (end - first) + kLanes > room_) make_room(2 * (size_ + (end - first)) + 16 * kLanes);
         float* to = numbers_.data() + size_;
+        const std::size_t room = room_;
         for (std::uint32_t entry = first; entry < end; ++entry) {
             const std::int32_t triangle = reference.entry(entry);
             if (!reference.is_in(triangle, sheet)) continue;
+            const std::int32_t* const corners = reference.corners(triangle);
             for (std::size_t n = 0; n < 3; ++n) {
-                const Real* const at = reference.corner(triangle, n);
+                const Real* const at = reference.place(corners[n]);
                 for (std::size_t a = 0; a < 3; ++a) {
                     if constexpr (std::is_same_v<Real, float>)
-                        to[(3 * n + a) * room_] = at[a];
+                        to[(3 * n + a) * room] = at[a];
                     else
-                        to[(3 * n + a) * room_] = static_cast<float>(at[a] - origin[a]);
+                        to[(3 * n + a) * room] = static_cast<float>(at[a] - origin[a]);
                 }
             }
-            to[kBorder * room_] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
+            to[kBorder * room] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
             ++to;
         }
         size_ = static_cast<std::size_t>(to - numbers_.data());
-    });
+    }
     // Then eight at once.
     for (std::size_t n = 0; n < kBorder; ++n) {
         const Floats by(mesh.stretch()[n % 3]);
@@ -103,6 +118,9 @@ void Patch::select(const Patch& from, const Box& box, const Facets::Frame& frame
                                              {frame.v[0], frame.v[1], frame.v[2]},
                                              {frame.h[0], frame.h[1], frame.h[2]}};
     const Vector<Floats> origin{frame.origin[0], frame.origin[1], frame.origin[2]};
+    const float base = frame.top_u - frame.length;
+    const Floats beyond_right(margin * std::sqrt(base * base + frame.top_v * frame.top_v)),
+        beyond_left(margin * std::sqrt(frame.top_u * frame.top_u + frame.top_v * frame.top_v));
     const Spot low{std::min(0.0f, frame.top_u) - margin, -margin, -margin};
     const Spot high{std::max(frame.length, frame.top_u) + margin, frame.top_v + margin, margin};
     for (std::size_t first = 0; first < count; first += kLanes) {
@@ -118,6 +136,14 @@ void Patch::select(const Patch& from, const Box& box, const Facets::Frame& frame
             apart = apart | (greatest(seen[0][a], greatest(seen[1][a], seen[2][a])) < Floats(low[a])) |
                     (Floats(high[a]) < least(seen[0][a], least(seen[1][a], seen[2][a])));
         }
+        const auto right = [&](std::size_t n) {
+            return (seen[n][0] - Floats(frame.length)) * Floats(frame.top_v) - seen[n][1] * Floats(base);
+        };
+        const auto left = [&](std::size_t n) {
+            return seen[n][1] * Floats(frame.top_u) - seen[n][0] * Floats(frame.top_v);
+        };
+        apart = apart | (beyond_right < least(right(0), least(right(1), right(2)))) |
+                (beyond_left < least(left(0), least(left(1), left(2))));
         bits &= ~apart.bits();
         if (bits == 0) continue;
         for (std::size_t n = 0; n < kBorder; ++n) seen[n / 3][n % 3].pack(bits, column(n) + size_);

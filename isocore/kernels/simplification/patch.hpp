@@ -60,8 +60,9 @@ class Patch {
     const float* column(std::size_t number) const { return numbers_.data() + number * room_; }
     float* column(std::size_t number) { return numbers_.data() + number * room_; }
 
-    std::size_t room_ = 0;        // of a column
-    std::vector<float> numbers_;  // column by column
+    std::size_t room_ = 0;                            // of a column
+    std::vector<float> numbers_;                      // column by column
+    std::vector<std::array<std::uint32_t, 2>> runs_;  // of the reference's entries
 };
 
 }  // namespace isocore::simplification

@@ -40,8 +40,12 @@ class Reference {
         return entries_.empty() ? static_cast<std::int32_t>(number) : entries_[number];
     }
 
-    // x, y and z.
-    const Real* corner(std::int32_t triangle, std::size_t n) const { return mesh_.vertices + 3 * vertex(triangle, n); }
+    // The three vertices of a triangle.
+    const std::int32_t* corners(std::int32_t triangle) const {
+        return mesh_.triangles + 3 * static_cast<std::size_t>(triangle);
+    }
+    // x, y and z of a vertex.
+    const Real* place(std::int32_t vertex) const { return mesh_.vertices + 3 * static_cast<std::size_t>(vertex); }
     bool is_in(std::int32_t triangle, std::uint32_t sheet) const {
         return mesh_.sheets == nullptr || mesh_.sheets[triangle] == sheet;
     }

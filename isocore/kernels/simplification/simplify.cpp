@@ -15,7 +15,7 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr std::int32_t kBoxCells = 64;
+constexpr std::int32_t kBoxCells = 32;
 constexpr int kPhases = 4;
 constexpr float kFirstLimit = 1.0f / 16;  // cells, where a number of triangles is asked for
 // How far the boxes of each phase are shifted along each axis, in quarters of a box.
@@ -136,6 +136,9 @@ class Simplification {
             if (vertex.movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
         }
         std::erase_if(boxes, [](const auto& box) { return box.empty(); });
+        // The longest first, so that no thread is left with a long one at the end.
+        std::stable_sort(boxes.begin(), boxes.end(),
+                         [](const auto& one, const auto& other) { return one.size() > other.size(); });
         return boxes;
     }
 

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "common/prefetch.hpp"
+
 namespace isocore::simplification {
 namespace {
 
+constexpr std::size_t kAhead = 4;  // vertices
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <class Real>
@@ -26,6 +29,12 @@ class Sweep {
             cheapest_ = n;
         }
         return best;
+    }
+
+    // Asks for what is known of a vertex ahead of its turn.
+    void fetch(std::int32_t vertex) const {
+        const Vertex& next = mesh_.vertices[static_cast<std::size_t>(vertex)];
+        for (std::size_t n = 0; n < next.count; ++n) ISOCORE_PREFETCH(mesh_.triangles.data() + next.ring[n]);
     }
 
     void look_at(std::int32_t vertex) {
@@ -101,18 +110,24 @@ void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contract
         costs[static_cast<std::size_t>(v)] = sweep.find_cheapest();
     }
     constexpr float kFirst = 1e-6f;
+    constexpr int kWider = 3;
+    const bool is_whole = most == std::numeric_limits<std::size_t>::max();
     while (most > 0) {
         float cheapest = kInfinity;
         for (const std::int32_t v : vertices) cheapest = std::min(cheapest, costs[static_cast<std::size_t>(v)]);
         if (cheapest == kInfinity) return;
         int exponent = 0;
         std::frexp(std::max(cheapest, kFirst), &exponent);
-        const float limit = std::ldexp(1.0f, exponent);  // the next power of two above
+        // The next power of two above, or one further on. Where a number of triangles is asked for, it is the order
+        // that keeps the error small.
+        const float limit = std::ldexp(1.0f, exponent + (is_whole ? kWider : 0));
         bool is_done = false;
         while (!is_done && most > 0) {
             is_done = true;
-            for (const std::int32_t v : vertices) {
+            for (std::size_t n = 0; n < vertices.size(); ++n) {
+                const std::int32_t v = vertices[n];
                 if (costs[static_cast<std::size_t>(v)] > limit) continue;
+                if (n + kAhead < vertices.size()) sweep.fetch(vertices[n + kAhead]);
                 if (sweep.try_vertex(v, limit)) --most;
                 is_done = false;
                 if (most == 0) break;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/array.hpp"
+#include "common/prefetch.hpp"
 #include "simplification/cells.hpp"
 #include "simplification/mesh.hpp"
 
@@ -44,6 +45,11 @@ class TriangleGrid {
                 if (triangle != kNone) visit(triangle);
             }
         }
+    }
+    // Asks for a cube's list ahead of its use.
+    void fetch(std::int32_t cube) const {
+        const std::int32_t b = first_[static_cast<std::size_t>(cube)];
+        if (b != kNone) ISOCORE_PREFETCH(&block(b));
     }
     // The cube of a cell, and the number of a cube.
     std::int32_t number(const Cell& cube) const {
