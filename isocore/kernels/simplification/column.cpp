@@ -141,21 +141,27 @@ Column::Part Column::part_of(const std::array<Height, 3>& triangle) const {
     std::size_t count = 3;
     std::copy(triangle.begin(), triangle.end(), part.begin());
     for (const Wall& wall : walls_) {
-        const auto beyond = [&](const Height& at) { return -wall.depth(at.u, at.v) - wall.blur; };
+        std::array<float, 6> beyond;
+        std::size_t inside = 0;
+        for (std::size_t n = 0; n < count; ++n) {
+            beyond[n] = -wall.depth(part[n].u, part[n].v) - wall.blur;
+            inside += static_cast<std::size_t>(beyond[n] <= 0);
+        }
+        if (inside == count) continue;
+        if (inside == 0) return Part::none;
         std::size_t kept = 0;
         for (std::size_t n = 0; n < count; ++n) {
-            const Height &from = part[n], &to = part[n + 1 == count ? 0 : n + 1];
-            const float at_from = beyond(from), at_to = beyond(to);
-            if (at_from <= 0) next[kept++] = from;
-            if ((at_from <= 0) != (at_to <= 0)) {
-                const float share = at_from / (at_from - at_to);
+            const std::size_t m = n + 1 == count ? 0 : n + 1;
+            const Height &from = part[n], &to = part[m];
+            if (beyond[n] <= 0) next[kept++] = from;
+            if ((beyond[n] <= 0) != (beyond[m] <= 0)) {
+                const float share = beyond[n] / (beyond[n] - beyond[m]);
                 next[kept++] = {from.u + share * (to.u - from.u), from.v + share * (to.v - from.v),
                                 from.h + share * (to.h - from.h)};
             }
         }
         part = next;
         count = kept;
-        if (count == 0) return Part::none;
     }
     const auto [low, high] = std::minmax_element(part.begin(), part.begin() + count,
                                                  [](const Height& a, const Height& b) { return a.h < b.h; });
