@@ -13,11 +13,7 @@ it, it is printable and at most LONGEST characters; a report's `source` and `out
 from __future__ import annotations
 
 import errno
-import gzip
-import lzma
 import os
-import unicodedata
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -105,11 +101,22 @@ def _cut(text: str, most: int) -> str:
 
 
 def _shown(character: str) -> str:
+    import unicodedata  # late, so that the command line's help stays quick
+
     if character.isprintable() or unicodedata.category(character) == "Zs":
         return character
     if character in _STRAY_BYTES:
         return f"\\x{ord(character) - 0xDC00:02x}"
     return repr(character)[1:-1]
+
+
+def _damaged_archives() -> tuple[type[Exception], ...]:
+    """What packed data raises that is damaged or ends early; the libraries are imported late, for a quick help."""
+    import gzip
+    import lzma
+    import zlib
+
+    return EOFError, zlib.error, lzma.LZMAError, gzip.BadGzipFile
 
 
 @contextmanager
@@ -133,7 +140,7 @@ def reading(path: os.PathLike[str] | str) -> Iterator[None]:
         raise InputError(f"{name}: may not be read; check its permissions") from error
     except MemoryError as error:
         raise InputError(f"{name}: does not fit into memory; free some or crop the data") from error
-    except (EOFError, zlib.error, lzma.LZMAError, gzip.BadGzipFile) as error:
+    except _damaged_archives() as error:
         raise InputError(
             f"{name}: compressed data is damaged or ends early ({one_line(error)}); copy it again"
         ) from error
