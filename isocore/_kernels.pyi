@@ -93,6 +93,8 @@ def simplify(
     other: tuple[float, float, float] = ...,
     cell: float = 1.0,
     most_triangles: int = 0,
+    written: _Float64 | None = None,
+    rounding: float = 0.0,
     threads: int = 1,
 ) -> SimplifiedMesh: ...
 

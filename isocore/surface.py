@@ -205,6 +205,29 @@ def place_fresh(
     return Surface(out, triangles, normals, space, unit)
 
 
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where an affine puts vertices: at (v, 3) float32 or float64, as they are rounded when they are written.
+
+    rounding: how far that moves one along each axis at most, in the frame that they came from.
+    """
+
+    at: npt.NDArray[Any]
+    rounding: float
+
+
+def places_of(vertices: npt.NDArray[Any], affine: npt.NDArray[np.float64], threads: int = 1) -> Places:
+    """What `place_fresh` makes of (v, 3) vertices, which stay as they are."""
+    rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
+    out = np.empty(vertices.shape, coordinate_type(vertices, rows))
+    _kernels.place(vertices, rows, out, threads)
+    if not len(out):
+        return Places(out, 0.0)
+    step = float(np.spacing(np.abs(np.array(_kernels.bounds(out), out.dtype)).max()))
+    back = float(np.abs(np.linalg.inv(rows[:, :3])).sum(axis=1).max())
+    return Places(out, step * back)
+
+
 def coordinate_type(vertices: npt.NDArray[Any], rows: npt.NDArray[np.float64]) -> type:
     """float32, or float64 where the steps of float32 are too coarse for the shortest voxel edge.
 

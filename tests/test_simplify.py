@@ -19,6 +19,7 @@ from isocore import _kernels
 from isocore.backends import Options, prepare
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
+from isocore.surface import places_of
 from isocore.volume import Volume
 
 
@@ -189,3 +190,20 @@ def test_an_empty_surface_stays_empty(tmp_path: Path) -> None:
     code, record, _ = run(tmp_path, str(SAMPLES / "knot.nii.gz"), "-i", "300", "--simplify")
     assert code == 0
     assert record["status"] == "empty"
+
+
+def test_no_triangles_meet_where_vertices_are_rounded_far_from_the_origin() -> None:
+    """Some would: there a vertex moves by 0.0002 voxels when it is written, and noise leaves triangles of that size."""
+    samples = np.asfortranarray(np.random.default_rng(5).integers(0, 9, (22, 22, 22)).astype(np.int16))
+    affine = np.eye(4)
+    affine[:3] = [[0.96, 0.28, 0, 3000], [-0.28, 0.96, 0, 3000], [0, 0, 1, 3000]]
+    marched = _kernels.marching_cubes(samples, 4.003)
+    unaware = _kernels.simplify(*marched[:2], *marched[:2], 0.5)
+    assert not _kernels.self_intersections(unaware.vertices, unaware.triangles)
+    assert _kernels.self_intersections(places_of(unaware.vertices, affine).at, unaware.triangles)
+    found = prepare(Volume(samples, affine=affine), "mc", Options(simplify=True, max_error="0.5"))(4.003)
+    surface = found.surface
+    assert surface.vertices.dtype == np.float32
+    assert not _kernels.self_intersections(surface.vertices, surface.triangles)
+    kept = {place.tobytes() for place in places_of(marched.vertices, affine).at}
+    assert all(place.tobytes() in kept for place in surface.vertices)

@@ -18,7 +18,7 @@ from isocore.methods.carrying import volume_fields
 from isocore.methods.marching_cells import prepare_marching_cells
 from isocore.methods.normals import volume_normals
 from isocore.methods.simplifying import Mesh, Simplifier, volume_simplifier
-from isocore.surface import place_fresh
+from isocore.surface import place_fresh, places_of
 from isocore.volume import Volume
 
 
@@ -65,7 +65,7 @@ def drawn(
     reference: makes the surface that the mesh stands for, where it is not that itself.
     """
     if simplify is not None:
-        fewer = simplify(mesh, reference)
+        fewer = simplify(mesh, reference, lambda vertices: places_of(vertices, volume.affine, options.threads))
         mesh, warnings = (fewer.vertices, fewer.triangles), (*warnings, *fewer.warnings)
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
     return placed(volume, mesh, options, findings, warnings)

@@ -21,6 +21,7 @@ from isocore.errors import OptionError
 from isocore.extraction import Deviation, Simplification
 from isocore.job import Options
 from isocore.methods.bounds import DEFAULT_MAX_ERROR, Bound, bound_for, mesh_bound
+from isocore.surface import Places
 from isocore.volume import Volume
 
 Mesh = tuple[npt.NDArray[Any], npt.NDArray[np.int32]]
@@ -57,8 +58,18 @@ class Simplifier:
     unit: str
     threads: int
 
-    def __call__(self, mesh: Mesh, reference: Callable[[], Mesh] | None = None) -> Simplified:
-        """A kernel's mesh with fewer triangles. reference: makes the surface that it stands for, if not that itself."""
+    def __call__(
+        self,
+        mesh: Mesh,
+        reference: Callable[[], Mesh] | None = None,
+        place: Callable[[npt.NDArray[Any]], Places] | None = None,
+    ) -> Simplified:
+        """A kernel's mesh with fewer triangles.
+
+        reference: makes the surface that it stands for, if not that itself.
+        place: where its vertices are written, if not where they are. Where no two triangles meet before vertices are
+        rounded there, two may afterwards; that is rare, so it is looked at, and then simplified again with an eye on it.
+        """
         known = mesh if reference is None else reference()
         start = perf_counter()
         if not self.is_bounded and 2 * self.most_triangles > len(mesh[1]):
@@ -67,6 +78,8 @@ class Simplifier:
         if found.unproved and mesh is not known and self.is_bounded:
             mesh = known  # a coarse triangle is too far from the reference, so start from that
             found, error = self._run(mesh, known)
+        if place is not None and self._meets_itself(found, place):
+            found, error = self._run(mesh, known, place(mesh[0]))
         facts = Simplification(
             triangles_before=len(mesh[1]),
             collapses=found.collapses,
@@ -85,7 +98,12 @@ class Simplifier:
         """Does a bound hold, whatever number of triangles is asked for?"""
         return math.isfinite(self.bound.distance) and (self.given or not self.most_triangles)
 
-    def _run(self, mesh: Mesh, reference: Mesh) -> tuple[_kernels.SimplifiedMesh, Deviation]:
+    def _meets_itself(self, found: _kernels.SimplifiedMesh, place: Callable[[npt.NDArray[Any]], Places]) -> bool:
+        return _kernels.self_intersections(place(found.vertices).at, found.triangles, self.threads) > 0
+
+    def _run(
+        self, mesh: Mesh, reference: Mesh, places: Places | None = None
+    ) -> tuple[_kernels.SimplifiedMesh, Deviation]:
         if self.spacing is None:
             bound = self.bound.distance if self.is_bounded else math.inf
             cell = _cell(*reference)
@@ -93,7 +111,7 @@ class Simplifier:
             found = self._simplify(mesh, reference, bound / cell, stretch, stretch, cell)
             back = found.back_max * cell
             return found, self._deviation(None, _times(found.error, cell), None, back, found.unproved)
-        found = self._simplify(mesh, reference, *self.scales())
+        found = self._simplify(mesh, reference, *self.scales(), places=places)
         return found, self.volume_deviation(found.error, found.error_other, found.back_max, found.unproved)
 
     def scales(self) -> tuple[float, Axes, Axes]:
@@ -114,9 +132,19 @@ class Simplifier:
         return self._deviation(error, _times(other, longest), back, back * longest, unproved)
 
     def _simplify(
-        self, mesh: Mesh, reference: Mesh, bound: float, stretch: Axes, other: Axes, cell: float = 1.0
+        self,
+        mesh: Mesh,
+        reference: Mesh,
+        bound: float,
+        stretch: Axes,
+        other: Axes,
+        cell: float = 1.0,
+        places: Places | None = None,
     ) -> _kernels.SimplifiedMesh:
-        return _kernels.simplify(*mesh, *reference, bound, stretch, other, cell, self.most_triangles, self.threads)
+        written, rounding = (places.at.astype(np.float64), places.rounding) if places else (None, 0.0)
+        return _kernels.simplify(
+            *mesh, *reference, bound, stretch, other, cell, self.most_triangles, written, rounding, self.threads
+        )
 
     def _deviation(
         self, voxels: Axes | None, world: Axes, back: float | None, back_world: float, unproved: int

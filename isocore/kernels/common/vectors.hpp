@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace isocore {
 
@@ -32,5 +33,8 @@ template <class Number>
 Vector<Number> cross(const Vector<Number>& a, const Vector<Number>& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
+
+// No less than the length.
+inline float sum_of_sizes(const Spot& a) { return std::abs(a[0]) + std::abs(a[1]) + std::abs(a[2]); }
 
 }  // namespace isocore

@@ -1,12 +1,15 @@
 // bind_simplification.cpp - simplify(vertices, triangles, reference_vertices, reference_triangles, max_error, stretch,
-// other, cell, most_triangles, threads) and sketch(vertices, triangles, cell, most_triangles), once per type of
-// coordinates.
+// other, cell, most_triangles, written, rounding, threads) and sketch(vertices, triangles, cell, most_triangles), once
+// per type of coordinates.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -29,13 +32,19 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
         "simplify",
         [=](const Rows<Real, 3>& vertices, const Triangles& triangles, const Rows<Real, 3>& reference_vertices,
             const Triangles& reference_triangles, double max_error, const std::array<double, 3>& stretch,
-            const std::array<double, 3>& other, double cell, std::size_t most_triangles, int threads) {
-            const simplification::Options options{max_error, stretch, cell, other, most_triangles, threads};
+            const std::array<double, 3>& other, double cell, std::size_t most_triangles,
+            const std::optional<Rows<double, 3>>& written, double rounding, int threads) {
+            const simplification::Options options{max_error, stretch, cell, other, most_triangles, rounding, threads};
+            simplification::MeshArrays<Real> input = arrays(vertices, triangles);
+            if (written) {
+                if (written->shape(0) != vertices.shape(0))
+                    throw std::invalid_argument("written: one place per vertex");
+                input.written = written->data();
+            }
             simplification::Simplified<Real> out;
             {
                 const nb::gil_scoped_release unlocked;
-                out = simplification::simplify(arrays(vertices, triangles),
-                                               arrays(reference_vertices, reference_triangles), options);
+                out = simplification::simplify(input, arrays(reference_vertices, reference_triangles), options);
             }
             const auto& f = out.facts;
             const double count = std::max<double>(1, static_cast<double>(reference_vertices.shape(0)));
@@ -50,7 +59,8 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
         nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("reference_vertices").noconvert(),
         nb::arg("reference_triangles").noconvert(), nb::arg("max_error"),
         nb::arg("stretch") = std::array<double, 3>{1, 1, 1}, nb::arg("other") = std::array<double, 3>{1, 1, 1},
-        nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("threads") = 1);
+        nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("written").noconvert() = nb::none(),
+        nb::arg("rounding") = 0.0, nb::arg("threads") = 1);
     module.def(
         "sketch",
         [=](const Rows<Real, 3>& vertices, const Triangles& triangles, double cell, std::size_t most_triangles) {

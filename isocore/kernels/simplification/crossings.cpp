@@ -39,7 +39,8 @@ void Crossings<Real>::prepare(const Star& star, const Facets& facets) {
     for (std::size_t n = 1; n + 1 < star.count; n += kLanes) {
         for (std::size_t a = 0; a < 3; ++a) {
             const Floats to(target_[a]), one(star.places[a].data() + n), other(star.places[a].data() + n + 1);
-            const Floats low = least(to, least(one, other)), high = greatest(to, greatest(one, other));
+            const Floats low = least(to, least(one, other)) - Floats(2 * rounding_);
+            const Floats high = greatest(to, greatest(one, other)) + Floats(2 * rounding_);
             low.store(low_[a].data() + n);
             high.store(high_[a].data() + n);
             lowest_[a] = std::min(lowest_[a], low.least_lane());  // lanes past the end are as the target
@@ -49,7 +50,29 @@ void Crossings<Real>::prepare(const Star& star, const Facets& facets) {
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
         const Spot normal = facets.frame(n - 1).h;
         for (std::size_t a = 0; a < 3; ++a) normal_[a][n] = normal[a];
+        find_blur(star, n);
     }
+}
+
+// one, other: how long the two sides are, at least.
+template <class Real>
+template <class Number>
+auto Crossings<Real>::blur_of(const Number& one, const Number& other) const -> Blur<Number> {
+    const Number moved(4 * rounding_);  // no less than what the ends of a side, or of the way, move together
+    const Number sides = one + other + moved;
+    return {moved * (one * other + sides * moved), moved * sides};
+}
+
+template <class Real>
+void Crossings<Real>::find_blur(const Star& star, std::size_t face) {
+    near_blur_[face] = 0;
+    far_blur_[face] = 1e-5f;
+    if (rounding_ == 0) return;
+    const Spot one = minus(star.place(face), target_), other = minus(star.place(face + 1), target_);
+    const Blur<float> blur = blur_of(sum_of_sizes(one), sum_of_sizes(other));
+    const float area = std::abs(dot({normal_[0][face], normal_[1][face], normal_[2][face]}, cross(one, other)));
+    near_blur_[face] = blur.near / area;
+    far_blur_[face] += 2 * blur.far / area;  // a way has two ends within reach
 }
 
 template <class Real>
@@ -164,7 +187,8 @@ void Crossings<Real>::look_at(const Star& star, std::size_t first) {
     }
     const auto one = minus(e.at[1], e.at[0]), other = minus(e.at[2], e.at[0]), normal = cross(one, other);
     e.reach = greatest(Floats(reach_), greatest(size_of(e.at[0]), greatest(size_of(e.at[1]), size_of(e.at[2]))));
-    e.blur = Floats(1e-6f) * size_of(one) * size_of(other) * e.reach;
+    const Blur<Floats> blur = blur_of(size_of(one), size_of(other));
+    e.blur = (Floats(1e-6f) * size_of(one) * size_of(other) + Floats(2) * blur.far) * e.reach + blur.near;
     for (std::size_t m = 0; m < star.count; ++m) {
         const Spot place = star.place(m);
         const Floats off = dot(minus({place[0], place[1], place[2]}, e.at[0]), normal);
@@ -180,8 +204,8 @@ void Crossings<Real>::look_at(const Star& star, std::size_t first) {
 template <class Real>
 unsigned Crossings<Real>::apart(std::size_t face) const {
     const Eight& e = eight_;
-    const Floats zero(0.0f), face_blur = Floats(1e-5f) * e.reach, own(static_cast<float>(face)),
-                             next(static_cast<float>(face + 1));
+    const Floats zero(0.0f), face_blur = Floats(near_blur_[face]) + Floats(far_blur_[face]) * e.reach,
+                             own(static_cast<float>(face)), next(static_cast<float>(face + 1));
     const Floats lowest = least(e.least[0], least(e.least[face], e.least[face + 1]));
     const Floats highest = greatest(e.most[0], greatest(e.most[face], e.most[face + 1]));
     auto apart = (e.blur < lowest) | (highest < zero - e.blur);
@@ -240,6 +264,10 @@ std::array<std::int32_t, 3> Crossings<Real>::Candidates::numbers(std::size_t tri
 template <class Real>
 Corners3 Crossings<Real>::exact(const std::array<std::int32_t, 3>& numbers) const {
     Corners3 out{numbers, {}};
+    if (!mesh_.written.empty()) {
+        for (std::size_t n = 0; n < 3; ++n) out.places[n] = mesh_.written[static_cast<std::size_t>(numbers[n])];
+        return out;
+    }
     for (std::size_t n = 0; n < 3; ++n) {
         const auto& at = mesh_.places[static_cast<std::size_t>(numbers[n])].at;
         out.places[n] = {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};

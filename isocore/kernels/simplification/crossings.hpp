@@ -38,7 +38,11 @@ template <class Real>
 class Crossings {
   public:
     Crossings(const Mesh<Real>& mesh, const TriangleGrid& grid)
-        : mesh_(mesh), grid_(grid), seen_cubes_(grid.cube_count()), seen_triangles_(mesh.triangles.size()) {}
+        : mesh_(mesh),
+          grid_(grid),
+          rounding_(mesh.rounding()),
+          seen_cubes_(grid.cube_count()),
+          seen_triangles_(mesh.triangles.size()) {}
 
     // Do the faces meet anything that they should not? facets: star.draw()'s. others: stars of the same vertex, in
     // other sheets, which are drawn at the same time: their faces count, their triangles do not.
@@ -72,7 +76,17 @@ class Crossings {
         std::array<Floats, Ring::kRoom> least, most;  // how far each neighbour lies from a plane, if it is no corner
     };
 
+    // What rounding may do to the product of a triangle's two sides with the way to a point, at most: `near`, and
+    // `far` for each unit of that way.
+    template <class Number>
+    struct Blur {
+        Number near, far;
+    };
+    template <class Number>
+    Blur<Number> blur_of(const Number& one, const Number& other) const;
+
     void prepare(const Star& star, const Facets& facets);
+    void find_blur(const Star& star, std::size_t face);
     void take_faces(const Star& star);
     void find_cubes(const Star& star);
     void find_triangles(const Star& star);
@@ -85,12 +99,14 @@ class Crossings {
     using PerFace = std::array<float, Ring::kRoom>;
     const Mesh<Real>& mesh_;
     const TriangleGrid& grid_;
+    float rounding_;
     NumberSet seen_cubes_, seen_triangles_;
     std::vector<std::int32_t> cubes_, triangles_;
     Candidates near_, candidates_;
     Eight eight_;
     std::array<std::size_t, Ring::kRoom> starts_{};  // in cubes_, by face
     Vector<PerFace> normal_, low_, high_;            // of each face, from number 1 on
+    PerFace near_blur_, far_blur_;                   // nearer to its plane nothing is clearly on one side: these two
     Vector<float> target_{};
     Spot lowest_{}, highest_{};  // of all
     float reach_ = 0;

@@ -37,8 +37,10 @@ std::int32_t* RingRoom::take(std::size_t size) {
 }
 
 template <class Real>
-Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch)
-    : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])} {
+Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch,
+                 double rounding)
+    : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])},
+      rounding_(static_cast<float>(rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {
     for (std::size_t n = 0; n < 3 * input.triangle_count; ++n) {
         if (static_cast<std::size_t>(static_cast<std::uint32_t>(input.triangles[n])) >= input.vertex_count)
             throw std::invalid_argument("a triangle names a vertex that does not exist");
@@ -61,11 +63,16 @@ void Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cel
     places.resize(count);
     original.resize(count);
     renumbered_.resize(count);
+    if (input.written != nullptr) written.resize(count);
     for (std::size_t n = 0; n < count; ++n) {
         const std::int32_t from = order[n].second;
         const Real* const place = input.vertices + 3 * static_cast<std::size_t>(from);
         places[n] = {{place[0], place[1], place[2]}, kNone};
         original[n] = from;
+        if (input.written != nullptr) {
+            const double* const there = input.written + 3 * static_cast<std::size_t>(from);
+            written[n] = {there[0], there[1], there[2]};
+        }
         renumbered_[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(n);
     }
 }

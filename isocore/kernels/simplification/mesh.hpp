@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/array.hpp"
+#include "common/predicates.hpp"
 #include "common/vectors.hpp"
 #include "simplification/cells.hpp"
 #include "simplification/quadric.hpp"
@@ -69,7 +70,7 @@ class Mesh {
   public:
     // Vertices are renumbered by where they are, triangles by their first vertex, so that neighbours are close together
     // in memory. Throws std::invalid_argument if a triangle names a vertex that is not there.
-    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch);
+    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch, double rounding);
 
     std::size_t vertex_count() const { return vertices.size(); }
     // A place relative to another, stretched.
@@ -79,6 +80,8 @@ class Mesh {
                 static_cast<float>(place[2] - origin[2]) * stretch_[2]};
     }
     const Spot& stretch() const { return stretch_; }
+    // How far writing moves a vertex along each axis at most, stretched.
+    float rounding() const { return rounding_; }
 
     // What is left, in the order in which it came in.
     void take(const MeshArrays<Real>& input, Simplified<Real>& out) const;
@@ -89,6 +92,7 @@ class Mesh {
     Array<Triangle> triangles;
     Array<float> proved;           // by triangle: how far its points lie from the reference, at most
     Array<std::int32_t> original;  // the vertices' numbers in the input
+    Array<Point> written;          // where the vertices are written; none where they stay as they are
 
     // The sheet of a triangle; 0 where the mesh is not made of sheets.
     std::uint32_t sheet_of(std::int32_t triangle) const {
@@ -122,6 +126,7 @@ class Mesh {
     void add_planes();
 
     Spot stretch_;
+    float rounding_;
     Array<std::int32_t> renumbered_;  // by number in the input
     Array<std::int32_t> original_triangles_;
     Array<std::int32_t> rings_;

@@ -31,8 +31,8 @@ class Simplification {
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
           reference_(options.is_sketch ? MeshArrays<Real>{} : reference, cells_),
-          mesh_(input, cells_, options.stretch),
-          grid_(cells_),
+          mesh_(input, cells_, options.stretch, options.rounding),
+          grid_(cells_, options.rounding),
           costs_(mesh_.vertex_count()) {
         for (int n = 0; n < std::max(options.threads, 1); ++n)
             workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, reference_, grid_, limit_));

@@ -6,7 +6,7 @@
 
 namespace isocore::simplification {
 
-TriangleGrid::TriangleGrid(const Cells& cells) : cells_(cells) {
+TriangleGrid::TriangleGrid(const Cells& cells, double rounding) : cells_(cells), rounding_(rounding * cells.per_cell) {
     for (std::size_t a = 0; a < 3; ++a) dims_[a] = ((cells.dims[a] - 1) >> kBits) + 1;
     first_.resize(dims_[0] * dims_[1] * dims_[2]);
     std::fill(first_.begin(), first_.end(), kNone);
@@ -22,15 +22,20 @@ void TriangleGrid::cubes_of(const std::array<const std::array<Real, 3>*, 3>& cor
         std::array<double, 3> in_cells;
         for (std::size_t n = 0; n < 3; ++n) in_cells[n] = cells_.in_cells(static_cast<double>((*corners[n])[a]), a);
         const auto cube = [&](double place) { return cells_.clamped(place, a) >> kBits; };
-        low[a] = cube(std::min({in_cells[0], in_cells[1], in_cells[2]}));
-        high[a] = cube(std::max({in_cells[0], in_cells[1], in_cells[2]}));
+        low[a] = cube(std::min({in_cells[0], in_cells[1], in_cells[2]}) - rounding_);
+        high[a] = cube(std::max({in_cells[0], in_cells[1], in_cells[2]}) + rounding_);
         for (std::size_t n = 0; n < 3; ++n)
             at[n][a] = static_cast<float>(in_cells[n] / (1 << kBits) - static_cast<double>(low[a]));
     }
     if (low == high) return out.push_back(number(low));
-    const Spot normal = cross(minus(at[1], at[0]), minus(at[2], at[0]));
+    const Spot one = minus(at[1], at[0]), other = minus(at[2], at[0]), normal = cross(one, other);
     constexpr float kHalf = 0.5f + 1e-3f;  // of a cube, with some room for rounding
-    const float reach = kHalf * (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]));
+    float reach = kHalf * sum_of_sizes(normal);
+    if (rounding_ > 0) {  // moves the plane, and turns it
+        const auto moved = static_cast<float>(4 * rounding_ / (1 << kBits));
+        const auto across = static_cast<float>(high[0] - low[0] + high[1] - low[1] + high[2] - low[2] + 3);
+        reach += moved * (sum_of_sizes(normal) + (sum_of_sizes(one) + sum_of_sizes(other) + moved) * across);
+    }
     for (std::int32_t k = low[2]; k <= high[2]; ++k) {
         const float z = normal[2] * (static_cast<float>(k - low[2]) + 0.5f - at[0][2]);
         for (std::int32_t j = low[1]; j <= high[1]; ++j) {

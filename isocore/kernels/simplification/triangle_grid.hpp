@@ -26,7 +26,8 @@ class TriangleGrid {
         std::int32_t first = kNone;
     };
 
-    explicit TriangleGrid(const Cells& cells);
+    // rounding: how far writing moves a corner along each axis, in coordinates; a triangle touches what it then may.
+    TriangleGrid(const Cells& cells, double rounding);
 
     // Appends the cubes that a triangle touches, and perhaps a few that it nearly does. The same for the same places.
     template <class Real>
@@ -77,6 +78,7 @@ class TriangleGrid {
     void remove(std::int32_t triangle, std::int32_t& first, Spare& spare);
 
     Cells cells_;
+    double rounding_;                  // in cells
     std::array<std::size_t, 3> dims_;  // in cubes
     Array<std::int32_t> first_;        // block of each cube
     std::mutex guard_;                 // of chunks_

@@ -23,6 +23,8 @@ struct Options {
     std::array<double, 3> other{1, 1, 1};  // from coordinates to another unit, in which the error is measured besides
     // If not 0: stop when there are no more triangles than these. Smaller bounds are exhausted before larger ones.
     std::size_t most_triangles = 0;
+    // How far writing moves a vertex at most, once it is brought back to these coordinates.
+    double rounding = 0;
     int threads = 1;
     // With a number of triangles: keep topology and shapes alone. Nothing is bounded, proved or measured, and triangles
     // may meet: for a copy to look at, many times faster.
@@ -83,6 +85,8 @@ struct MeshArrays {
     std::size_t triangle_count;
     const std::uint32_t* sheets = nullptr;  // of each triangle: the number of its sheet
     std::size_t sheet_count = 0;
+    // Where each vertex is written, x, y, z: elsewhere, since it is turned, stretched and rounded. None where it stays.
+    const double* written = nullptr;
 };
 
 }  // namespace isocore::simplification
