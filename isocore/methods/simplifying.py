@@ -67,8 +67,8 @@ class Simplifier:
         """A kernel's mesh with fewer triangles.
 
         reference: makes the surface that it stands for, if not that itself.
-        place: where its vertices are written, if not where they are. Where no two triangles meet before vertices are
-        rounded there, two may afterwards; that is rare, so it is looked at, and then simplified again with an eye on it.
+        place: where its vertices are written, if not where they are. Rounded there, two triangles may meet that were
+        apart before; that is rare, so it is looked at, and then simplified again with an eye on it.
         """
         known = mesh if reference is None else reference()
         start = perf_counter()

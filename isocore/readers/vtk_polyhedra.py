@@ -90,7 +90,8 @@ def _streamed(arrays: CellArrays, stream: Integers, ends: Integers, numbers: npt
     _refuse_first(arrays, numbers, (starts >= stops) | (starts < 0) | (stops > len(stream)), "has no faces")
     counts = stream[starts].astype(np.int64)
     # A face takes four numbers or more, so a count is known to be wrong before anything is reserved for it.
-    _refuse_first(arrays, numbers, (counts < 0) | (4 * counts >= stops - starts), "has a wrong count of faces")
+    too_many = counts >= (stops - starts + 3) // 4  # divided, since a product of any number may be out of range
+    _refuse_first(arrays, numbers, (counts < 0) | too_many, "has a wrong count of faces")
     first = np.cumsum(counts) - counts
     sizes, at = np.zeros(int(counts.sum()), np.int64), np.zeros(int(counts.sum()), np.int64)
     place, left = starts + 1, np.arange(len(numbers))

@@ -144,6 +144,7 @@ def test_faces_that_are_wrong_are_refused_with_the_first_cell(faces, message, ne
         ({"faces": lambda a: [-1, *a[1:]]}, "polyhedron 0 has a wrong count of faces"),
         ({"faces": lambda a: [9, *a[1:]]}, "polyhedron 0 has a wrong count of faces"),
         ({"faces": lambda a: [2**40, *a[1:]]}, "polyhedron 0 has a wrong count of faces"),
+        ({"faces": lambda a: [2**62 + 1, *a[1:]]}, "polyhedron 0 has a wrong count of faces"),
         ({"faceoffsets": lambda a: [99]}, "polyhedron 0 has no faces"),
         ({"faceoffsets": lambda a: [-1]}, "polyhedron 0 has no faces"),
         ({"faceoffsets": lambda a: [*a, *a]}, "array 'faceoffsets' is for 2 cells, there are 1"),
