@@ -219,7 +219,7 @@ class Places:
 def places_of(vertices: npt.NDArray[Any], affine: npt.NDArray[np.float64], threads: int = 1) -> Places:
     """What `place_fresh` makes of (v, 3) vertices, which stay as they are."""
     rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
-    out = np.empty(vertices.shape, coordinate_type(vertices, rows))
+    out: npt.NDArray[Any] = np.empty(vertices.shape, coordinate_type(vertices, rows))
     _kernels.place(vertices, rows, out, threads)
     if not len(out):
         return Places(out, 0.0)
