@@ -29,7 +29,7 @@ from isocore.writers.obj import write_materials, write_obj
 from isocore.writers.ply import write_ply_points
 from isocore.writers.vtp import write_vtp
 
-_NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --normals adds none; write PLY or OBJ"
+_NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --normals adds none; write PLY, VTP or OBJ"
 
 
 def format_warnings(job: Job) -> tuple[str, ...]:

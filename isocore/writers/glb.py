@@ -38,7 +38,7 @@ def write_glb(stream: BinaryIO, surface: Surface, threads: int) -> None:
     text += b" " * (-len(text) % 4)
     length = 12 + 8 + len(text) + (8 + scene.bytes if scene.bytes else 0)
     if length >= 2**32:
-        raise OutputError(f"GLB ends at 4 GiB, and this surface takes {length:,} bytes; write PLY")
+        raise OutputError(f"GLB ends at 4 GiB, and this surface takes {length:,} bytes; write PLY or VTP")
     stream.write(struct.pack("<3I", _MAGIC, 2, length) + struct.pack("<2I", len(text), _JSON) + text)
     if scene.bytes:
         stream.write(struct.pack("<2I", scene.bytes, _BIN))

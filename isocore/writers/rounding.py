@@ -53,7 +53,7 @@ def as_read(surface: Surface, format: Format, threads: int = 1) -> Surface:
 def _float32(vertices: npt.NDArray[Any], threads: int) -> npt.NDArray[np.float32]:
     farthest = max(map(abs, _kernels.bounds(vertices)))
     if not farthest <= float(np.finfo(np.float32).max):
-        raise OutputError(f"it keeps float32, which ends before coordinates of {farthest:.3g}; write PLY or OBJ")
+        raise OutputError(f"it keeps float32, which ends before coordinates of {farthest:.3g}; write PLY, VTP or OBJ")
     return vertices.astype(np.float32)
 
 
@@ -66,7 +66,7 @@ _ROUNDING: dict[str, Callable[[npt.NDArray[Any], int], npt.NDArray[Any]]] = {
 }
 _KEEPS = {name: f"{name.upper()} keeps float32 only" for name in ("stl", "glb")}
 _KEEPS |= {"gii": "GIFTI keeps float32 only", "obj": "OBJ keeps nine digits"}
-_INSTEAD = dict.fromkeys(("stl", "glb", "gii"), "write PLY or OBJ") | {"obj": "write PLY, which keeps float64"}
+_INSTEAD = dict.fromkeys(("stl", "glb", "gii"), "write PLY, VTP or OBJ") | {"obj": "write PLY or VTP, which keep float64"}
 
 
 def _loss(surface: Surface, after: npt.NDArray[Any], format: Format, threads: int) -> tuple[str, ...]:

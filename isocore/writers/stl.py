@@ -14,7 +14,7 @@ from isocore.writers.pieces import offset_text, pieces
 def write_stl(stream: BinaryIO, surface: Surface, threads: int) -> None:
     """Write all triangles."""
     if len(surface.triangles) >= 2**32:
-        raise OutputError(f"STL cannot count {len(surface.triangles):,} triangles; write PLY")
+        raise OutputError(f"STL cannot count {len(surface.triangles):,} triangles; write PLY or VTP")
     stream.write(_header(surface) + struct.pack("<I", len(surface.triangles)))
     for triangles in pieces(surface.triangles):
         stream.write(_kernels.stl_records(surface.vertices, triangles, threads).data)
