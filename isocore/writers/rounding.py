@@ -66,7 +66,8 @@ _ROUNDING: dict[str, Callable[[npt.NDArray[Any], int], npt.NDArray[Any]]] = {
 }
 _KEEPS = {name: f"{name.upper()} keeps float32 only" for name in ("stl", "glb")}
 _KEEPS |= {"gii": "GIFTI keeps float32 only", "obj": "OBJ keeps nine digits"}
-_INSTEAD = dict.fromkeys(("stl", "glb", "gii"), "write PLY, VTP or OBJ") | {"obj": "write PLY or VTP, which keep float64"}
+_INSTEAD = dict.fromkeys(("stl", "glb", "gii"), "write PLY, VTP or OBJ")
+_INSTEAD |= {"obj": "write PLY or VTP, which keep float64"}
 
 
 def _loss(surface: Surface, after: npt.NDArray[Any], format: Format, threads: int) -> tuple[str, ...]:
