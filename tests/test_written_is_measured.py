@@ -213,7 +213,7 @@ def test_nine_digits_are_those_of_the_text():
 def test_coordinates_beyond_float32_are_no_stl(tmp_path):
     """An infinity would be written; the message names what will do."""
     huge = Surface(shapes_mesh.cube().vertices.astype(np.float64) * 1e39, shapes_mesh.cube().triangles)
-    with pytest.raises(OutputError, match=r"float32.*PLY or OBJ"):
+    with pytest.raises(OutputError, match=r"float32.*PLY, VTP or OBJ"):
         rounded(huge, "stl")
 
 
