@@ -61,6 +61,17 @@ float squared_distance(const Spot& a, const Spot& b, const Spot& c) {
     return off * off / dot(normal, normal);
 }
 
+// The same to the box around it: no further.
+float squared_distance_to_box(const Spot& a, const Spot& b, const Spot& c) {
+    float out = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+        const float off =
+            std::max({0.0f, std::min({a[n], b[n], c[n]}), -std::max({a[n], b[n], c[n]})});  // one is positive at most
+        out += off * off;
+    }
+    return out;
+}
+
 // Looks for the triangle nearest to a place.
 template <class Real>
 class Nearest {
@@ -122,7 +133,9 @@ class Nearest {
         const auto corner = [&](std::size_t n) {
             return mesh_.relative(mesh_.places[static_cast<std::size_t>(c[n])].at, place_);
         };
-        const float squared = squared_distance(corner(0), corner(1), corner(2));
+        const Spot at = corner(0), next = corner(1), last = corner(2);
+        if (squared_distance_to_box(at, next, last) > best_) return;
+        const float squared = squared_distance(at, next, last);
         if (squared < best_ || (squared == best_ && triangle < found_)) {
             best_ = squared;
             found_ = triangle;
