@@ -13,7 +13,6 @@ import click
 from isocore.choices import About, Choice, Format, MaxError
 from isocore.labels import Labels
 from isocore.piece_sizes import MinPiece
-from isocore.views import Views
 
 from .convert_fields import FIELDS
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
@@ -24,6 +23,7 @@ from .options import Reading, default_threads, with_all
 from .values import Range
 
 if TYPE_CHECKING:
+    from isocore.views import Views
     from isocore.volume import Space
 
 

@@ -8,7 +8,6 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from isocore import views
 from isocore.errors import OptionError
 
 from .groups import option_of
@@ -22,14 +21,22 @@ class ViewList(Worded):
     """Views, as A,L,S or 30:15."""
 
     name = "LIST"
-    words = views.VIEW_WORDS
+
+    @property
+    def words(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Those that a shell completes."""
+        from isocore.views import VIEW_WORDS  # late: no help needs them
+
+        return VIEW_WORDS
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
         """The views."""
-        if isinstance(value, views.Views):
+        from isocore.views import Views, parse_views
+
+        if isinstance(value, Views):
             return value
         try:
-            return views.parse_views(value)
+            return parse_views(value)
         except OptionError as error:
             self.fail(str(error).removeprefix("--view "), parameter, context)
 
