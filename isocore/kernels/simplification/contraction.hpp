@@ -34,6 +34,7 @@ class Contraction {
     void set_limit(float limit) { limit_ = limit; }
     // From now on the rules of topology and shape are all there is.
     void sketch() { is_sketch_ = true; }
+    bool is_sketch() const { return is_sketch_; }
     // Of the last contraction: its star, or one for each sheet that meets on the curve.
     const Star& star(std::size_t n) const { return parts_[n].star; }
     std::size_t star_count() const { return count_; }
