@@ -31,11 +31,18 @@ def surfaces() -> list[isocore.Surface]:
 
 
 def cuts() -> list[isocore.Surface]:
-    """Climbing's mesh, without normals, so that it is shaded flat: its loops cut by area, and by the gradient."""
+    """Climbing's mesh, shaded flat: its loops cut by area, and by the gradient."""
     field = isocore.read(SAMPLE)
     assert isinstance(field, isocore.Volume)
     meshes = [_kernels.climb(field.samples, ISOVALUE, max_error=0.5, tilted=tilted) for tilted in (False, True)]
-    return [isocore.Surface(*mesh[:2]).placed(field.affine) for mesh in meshes]
+    return [flat(isocore.Surface(*mesh[:2]).placed(field.affine)) for mesh in meshes]
+
+
+def flat(surface: isocore.Surface) -> isocore.Surface:
+    """Every triangle with corners, and so normals, of its own."""
+    corners = np.ascontiguousarray(surface.vertices[surface.triangles].reshape(-1, 3))
+    triangles = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
+    return isocore.Surface(corners, triangles, _kernels.triangle_normals(corners, triangles))
 
 
 def picture(both: list[isocore.Surface], edges: float) -> Pixels:
