@@ -64,8 +64,7 @@ Array<double> errors_of(const Facts& facts, simplification::Deviation SheetFacts
 // The mesh and its lists of triangles by label. Python asks for one label at a time, from any thread.
 class LabelSurfaces {
   public:
-    LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks)
-        : mesh_(std::move(mesh)), ranks_(ranks) {}
+    LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks) : mesh_(std::move(mesh)), ranks_(ranks) {}
 
     std::size_t vertices() const { return mesh_.elements.size(); }
     std::size_t triangles() const { return mesh_.sides.size() / 2; }
