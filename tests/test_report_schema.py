@@ -283,3 +283,9 @@ def test_an_end_of_a_range_may_be_null(written: dict[str, Any], tmp_path: Path) 
     for suffix, render in RENDERERS.items():
         assert render(batch) is not None, suffix
     assert summary_row(batch.outputs[0], "a")[1] == "2.5"
+
+
+def test_colours_without_a_map_leave_the_page_without_them(tmp_path: Path) -> None:
+    """As a report says that was cut, or written by another version."""
+    batch = loaded(tmp_path, {"schema": 1, "outputs": [IDENTITY | {"colors": {"source": None}}]})
+    used(batch, tmp_path)

@@ -76,13 +76,15 @@ def _files(path: Path, head: Head) -> list[tuple[Path, int]]:
     """The files that hold the samples, in order, and the byte of each at which they may start."""
     if head.need("ElementDataFile").upper() == "LOCAL":
         return [(path, head.size)]
-    files = [path.parent / name for name in islice(_names(head), _MOST_FILES)]
-    for file in files:
+    files = []
+    for name in islice(_names(head), _MOST_FILES):  # one at a time: a number may stand for very many
+        file = path.parent / name
         if file == path:
             raise InputError("header names itself as the file of its samples; it is damaged")
         if not file.is_file():
             raise InputError(f"its samples are missing: {absence_beside(file)}")
-    return [(file, 0) for file in files]
+        files.append((file, 0))
+    return files
 
 
 def _names(head: Head) -> Iterator[str]:

@@ -45,10 +45,10 @@ def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES, page: Path 
     return before + "".join(parts[name] + after for name, after in (part.split("}}", 1) for part in rest))
 
 
-def _tables(names: Iterable[str]) -> dict[str, str]:
+def _tables(names: Iterable[object]) -> dict[str, str]:
     """The 256 colours of each map, as base64 of their red, green and blue."""
     found = {}
-    for name in dict.fromkeys(names):
+    for name in dict.fromkeys(name for name in names if isinstance(name, str)):  # a report may hold anything
         with suppress(ValueError):  # of another version
             found[name] = b64encode(colormap(name).tobytes()).decode()
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import tracemalloc
 import zlib
 from pathlib import Path
 
@@ -212,3 +213,14 @@ def test_real_files_are_read_as_itk_reads_them() -> None:
         for index in ((0, 0, 0), (5, 0, 3), (1, 7, 2)):
             expected = image.TransformIndexToPhysicalPoint(index)
             assert np.allclose((found.affine @ [*index, 1])[:3], expected, atol=1e-5)
+
+
+def test_numbered_files_are_looked_for_one_at_a_time(tmp_path: Path) -> None:
+    """A header of a few bytes that names billions of them reserves nothing for their names."""
+    path = made(tmp_path / "a.mhd", ElementDataFile="s%d.raw 1 4294967295", content=b"")
+    tracemalloc.start()
+    try:
+        assert "no s1.raw beside it" in refusal(path)
+        assert tracemalloc.get_traced_memory()[1] < 4_000_000
+    finally:
+        tracemalloc.stop()
