@@ -294,8 +294,10 @@ def test_whatever_changes_the_output_counts() -> None:
     target = Target("50", Path("x.ply"))
     base = options_hash(job, target)
     other: dict[str, Any] = {"format": "stl", "backend": "mc", "space": "lps", "offset": "1,2,3"}
+    packed = replace(job, format="vtp")
+    assert options_hash(replace(packed, compress=True), target) != options_hash(packed, target)
     for item in fields(Job):
-        if item.name in UNHASHED or item.name in ("options", "read_options"):
+        if item.name in UNHASHED or item.name in ("options", "read_options", "compress"):
             continue
         value = other.get(item.name, "other")
         assert options_hash(replace(job, **{item.name: value}), target) != base, item.name

@@ -37,7 +37,7 @@ _PACKINGS: dict[str, Packing] = {
     "bz2": "bzip2",
 }
 #: data file: a name with one printf place for a number, first, last, step, and the axes in each.
-_NUMBERED = re.compile(r"[^%\s]*%0?\d?[du][^%\s]*(\s+-?\d{1,18}){3,4}")
+_NUMBERED = re.compile(r"[^%\s]*%0?\d?[du][^%\s]*(\s+-?\d{1,400}){3,4}")
 #: So many of them are looked for before the header is known to be sound, and so many in a row that are not there: a
 #: damaged one may number billions.
 _MOST_FILES, _MOST_MISSING = 1 << 16, 1 << 8
