@@ -305,7 +305,7 @@ def test_whatever_changes_the_output_counts() -> None:
         part = getattr(job, name)
         for item in fields(part):
             value = not getattr(part, item.name) if isinstance(getattr(part, item.name), bool) else 7
-            value = {"normals": False, "max_error": "0.25"}.get(item.name, value)
+            value = {"normals": False, "max_error": "0.25", "carry": ("p",)}.get(item.name, value)
             changed = options_hash(replace(job, **{name: replace(part, **{item.name: value})}), target)
             assert (changed != base) == (item.name != "threads"), item.name
     assert options_hash(job, Target("51", Path("x.ply"))) != base
