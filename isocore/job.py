@@ -44,6 +44,7 @@ class Options:
     background: the label that is none; 0 by default. Of label maps only.
     keep_largest: keep so many of the largest pieces of each surface. min_piece: keep those that are as large; a text
         is parsed. fill_bubbles: drop the inner shells of the pieces kept.
+    angles: measure how far triangles are turned from the gradient, where an error is measured: for a report.
     """
 
     threads: int = 1
@@ -59,6 +60,7 @@ class Options:
     keep_largest: int | None = None
     min_piece: MinPiece | None = None
     fill_bubbles: bool = False
+    angles: bool = False
 
     def __post_init__(self) -> None:
         if isinstance(self.max_error, str):

@@ -80,7 +80,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
         outlook = replace(_outlook(job), cells=source.cells if isinstance(source, CellMesh) else 0)
         backend, why = backend_for(job, type(source), outlook)
         with timer("prepare"):
-            extract = prepare(source, backend, replace(job.options, normals=job.normals), outlook)
+            extract = prepare(source, backend, replace(job.options, normals=job.normals, angles=True), outlook)
         reference = _ReferenceRuns(source, backend, job)
         for target in job.targets:
             try:

@@ -42,7 +42,7 @@ def degrees(surface: Surface, outwards: npt.NDArray[Any]) -> npt.NDArray[np.floa
 
 
 def found(field: Volume | CellMesh, isovalue: float, backend: str, **asked: Any) -> tuple[Surface, Any]:
-    extraction = prepare(field, backend, Options(**asked))(isovalue)
+    extraction = prepare(field, backend, Options(**asked, angles=True))(isovalue)
     error = extraction.findings.error
     assert error is not None and error.normal_degrees is not None
     return extraction.surface, error.normal_degrees

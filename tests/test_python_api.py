@@ -76,10 +76,10 @@ def test_a_notebooks_day() -> None:
 
 
 def test_keywords_are_the_options(volume: Volume) -> None:
-    """Each option of an extraction is a keyword of extract, and does the same."""
+    """Each option of an extraction is a keyword of extract, and does the same; angles are what reports ask for."""
     keywords = inspect.signature(extract).parameters
-    assert {item.name for item in fields(Options)} - {"background"} <= keywords.keys()
-    assert {item.name for item in fields(Options)} <= inspect.signature(convert_files).parameters.keys()
+    assert {item.name for item in fields(Options)} - {"background", "angles"} <= keywords.keys()
+    assert {item.name for item in fields(Options)} - {"angles"} <= inspect.signature(convert_files).parameters.keys()
     by_name = extract(volume, 45, max_error=0.1, block_size=4, threads=2)
     by_object = extract(volume, 45, options=Options(max_error="0.1", block_size=4))  # type: ignore[arg-type]
     assert np.array_equal(by_name.vertices, by_object.vertices)

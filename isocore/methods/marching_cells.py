@@ -90,7 +90,7 @@ def mesh_surface(
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
     surface = (vertices, triangles)
     error = findings.error
-    normals = mesh_normals(mesh, isovalue, edges, surface, options, measured=error is not None)
+    normals = mesh_normals(mesh, isovalue, edges, surface, options, measured=options.angles and error is not None)
     if error is not None:
         findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
     drawn = Surface(*surface, normals.vertices, unit=mesh.unit, fields=fields)

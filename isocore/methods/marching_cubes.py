@@ -76,7 +76,7 @@ def placed(
 ) -> Extraction:
     """A kernel's index-space mesh as a surface in the volume's world, with the normals and angles that belong to it."""
     error = findings.error
-    normals = volume_normals(volume, mesh, options, measured=error is not None)
+    normals = volume_normals(volume, mesh, options, measured=options.angles and error is not None)
     if error is not None:
         findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
     fields = volume_fields(volume, mesh[0])
