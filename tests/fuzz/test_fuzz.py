@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from fuzz.run import fuzz, saved
-from fuzz.targets import MISBEHAVING, TARGETS
+from fuzz.targets import MISBEHAVING, TARGETS, Broken, check_line
 
 RUNS = 900
 
@@ -29,3 +29,11 @@ def test_the_fuzzer_notices(kind: str, tmp_path: Path) -> None:
     for finding in outcome.findings:
         assert finding["kind"] == ("crash" if kind == "exit" else kind)
         assert (saved(finding, tmp_path) / "f").is_file()
+
+
+def test_a_message_may_hold_wide_spaces_but_nothing_that_moves_a_cursor() -> None:
+    """Names have them, as Japanese ones do; a message shows them as they are."""
+    check_line("脳\u3000図.nii: no such file; check the path")
+    for character in "\n\r\t\x1b\u202e":
+        with pytest.raises(Broken):
+            check_line(f"a{character}.nii: no such file; check the path")
