@@ -22,9 +22,8 @@ class ViewList(Worded):
 
     name = "LIST"
 
-    @property
-    def words(self) -> tuple[str, ...]:  # type: ignore[override]
-        """Those that a shell completes."""
+    def offered(self) -> tuple[str, ...]:
+        """The words of views."""
         from isocore.views import VIEW_WORDS  # late: no help needs them
 
         return VIEW_WORDS

@@ -18,11 +18,15 @@ class Worded(click.ParamType):
 
     words: tuple[str, ...] = ()
 
+    def offered(self) -> tuple[str, ...]:
+        """Its words; where they are imported late, they are only when a shell asks."""
+        return self.words
+
     def shell_complete(
         self, context: click.Context, parameter: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
         """The words that begin so."""
-        return [CompletionItem(word) for word in self.words if word.startswith(incomplete.lower())]
+        return [CompletionItem(word) for word in self.offered() if word.startswith(incomplete.lower())]
 
 
 class Numbers(click.ParamType):

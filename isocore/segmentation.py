@@ -61,7 +61,7 @@ def _rows(samples: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
     """(nx, rows, 2, layers, 2): whole rows, in pairs of neighbours along j and k."""
     _, ny, nz = samples.shape
     most = ((ny, _ROWS), (nz, _LAYERS))
-    j, k = (np.unique(np.linspace(0, size - 2, min(size - 1, count)).astype(int)) for size, count in most)
+    j, k = (np.linspace(0, size - 2, min(size - 1, count)).astype(int) for size, count in most)
     pairs = np.arange(2)
     taken = samples[:, (j[:, None] + pairs).ravel()[:, None], (k[:, None] + pairs).ravel()]
     found: npt.NDArray[np.generic] = taken.reshape(samples.shape[0], len(j), 2, len(k), 2)

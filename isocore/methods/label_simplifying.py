@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.extraction import Deviation, Simplification
-from isocore.methods.simplifying import Axes, Simplifier
+from isocore.methods.simplifying import Axes, Simplifier, facts_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,16 +34,8 @@ class SimplifiedLabels:
         back = float(found.back_max[own].max(initial=0))
         refused = [int(count) for count in found.refused[own].sum(axis=0)]
         before = int(found.triangles_before[own].sum())
-        facts = Simplification(
-            triangles_before=before,
-            collapses=(before - triangles) // 2,  # of a closed surface, two triangles vanish with each edge
-            refused_link=refused[0],
-            refused_shape=refused[1],
-            refused_outward=refused[2],
-            refused_back=refused[3],
-            refused_crossing=refused[4],
-            seconds=self.seconds,
-        )
+        collapses = (before - triangles) // 2  # of a closed surface, two triangles vanish with each edge
+        facts = facts_of(before, collapses, refused, self.seconds)
         return self.simplifier.volume_deviation(error, other, back, int(found.unproved[own].sum())), facts
 
 

@@ -6,7 +6,7 @@ Edges are contracted within a bound on the error, both ways; kernels/simplificat
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -80,16 +80,7 @@ class Simplifier:
             found, error = self._run(mesh, known)
         if place is not None and self._meets_itself(found, place):
             found, error = self._run(mesh, known, place(mesh[0]))
-        facts = Simplification(
-            triangles_before=len(mesh[1]),
-            collapses=found.collapses,
-            refused_link=found.refused[0],
-            refused_shape=found.refused[1],
-            refused_outward=found.refused[2],
-            refused_back=found.refused[3],
-            refused_crossing=found.refused[4],
-            seconds=perf_counter() - start,
-        )
+        facts = facts_of(len(mesh[1]), found.collapses, found.refused, perf_counter() - start)
         missed = self.missed(len(found.triangles))
         return Simplified(found.vertices, found.triangles, found.kept, error, facts, missed)
 
@@ -172,6 +163,21 @@ class Simplifier:
         if self.is_bounded:
             return (f"{asked}, since fewer would break --max-error {self.bound.text}; allow a larger error",)
         return (f"{asked}, since fewer would change the surface's topology or shape",)
+
+
+def facts_of(before: int, collapses: int, refused: Sequence[int], seconds: float) -> Simplification:
+    """What a kernel counted, for the report. before: triangles; refused: edges by rule, in the kernel's order."""
+    link, shape, outward, back, crossing = refused
+    return Simplification(
+        triangles_before=before,
+        collapses=collapses,
+        refused_link=link,
+        refused_shape=shape,
+        refused_outward=outward,
+        refused_back=back,
+        refused_crossing=crossing,
+        seconds=seconds,
+    )
 
 
 def sketched(

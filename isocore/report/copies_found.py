@@ -6,7 +6,6 @@ They come out of the file beside the JSON report, else out of the meshes, as lon
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable
 from dataclasses import replace
 from hashlib import file_digest
@@ -140,6 +139,6 @@ def _kept_copies(report: Path) -> dict[tuple[str, str, str], Copy]:
 def working_folder() -> str:
     """Where relative paths of this process start; "" where that is gone."""
     try:
-        return os.getcwd()  # noqa: PTH109 - as it stands, not resolved
+        return str(Path.cwd())
     except OSError:
         return ""

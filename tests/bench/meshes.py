@@ -13,7 +13,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from smooth_mesh import smooth_mesh
+from smooth_mesh import smooth_mesh, vtk_grid
 
 from isocore.backends import Options, Outlook, prepare
 from isocore.cell_mesh import CellMesh
@@ -22,20 +22,11 @@ from isocore.cell_mesh import CellMesh
 def scalar_tree(mesh: CellMesh, threads: int) -> Callable[[float], int]:
     """VTK's vtkContour3DLinearGrid (which merges points) with vtkSpanSpace, built before the first figure."""
     import vtk
-    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
     vtk.vtkSMPTools.SetBackend("STDThread" if threads > 1 else "Sequential")
     vtk.vtkSMPTools.Initialize(threads)
-    points, cells, grid = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkUnstructuredGrid()
-    points.SetData(numpy_to_vtk(mesh.points, deep=True))
-    cells.SetData(4, numpy_to_vtkIdTypeArray(mesh.tets.astype(np.int64).ravel(), deep=True))
-    grid.SetPoints(points)
-    grid.SetCells(vtk.VTK_TETRA, cells)
-    values = numpy_to_vtk(mesh.values, deep=True)
-    values.SetName("values")
-    grid.GetPointData().SetScalars(values)
     contour, tree = vtk.vtkContour3DLinearGrid(), vtk.vtkSpanSpace()
-    contour.SetInputData(grid)
+    contour.SetInputData(vtk_grid(mesh))
     contour.SetInterpolateAttributes(False)
     contour.SetUseScalarTree(True)
     contour.SetScalarTree(tree)

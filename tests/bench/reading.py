@@ -21,7 +21,7 @@ from resource import RUSAGE_CHILDREN, getrusage
 from typing import Any
 
 import numpy as np
-from smooth_mesh import smooth_mesh
+from smooth_mesh import smooth_mesh, vtk_grid
 
 from isocore import CellMesh
 from isocore.readers import read
@@ -43,22 +43,6 @@ for source in sys.argv[2:]:
     writer = vtk.vtkPLYWriter(); writer.SetInputConnection(contour.GetOutputPort()); writer.SetFileTypeToBinary()
     writer.SetFileName(sys.argv[1] + "/" + source.rsplit("/", 1)[-1] + ".ply"); writer.Write()
 """
-
-
-def vtk_grid(mesh: CellMesh) -> Any:
-    """The mesh as VTK has it."""
-    import vtk
-    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-
-    grid, points, cells = vtk.vtkUnstructuredGrid(), vtk.vtkPoints(), vtk.vtkCellArray()
-    points.SetData(numpy_to_vtk(mesh.points, deep=True))
-    cells.SetData(4, numpy_to_vtkIdTypeArray(mesh.tets.astype(np.int64).ravel(), deep=True))
-    grid.SetPoints(points)
-    grid.SetCells(vtk.VTK_TETRA, cells)
-    values = numpy_to_vtk(mesh.values, deep=True)
-    values.SetName("values")
-    grid.GetPointData().SetScalars(values)
-    return grid
 
 
 def write(grid: Any, path: Path, mode: str, compressor: str | None, bits: int) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from isocore import CellMesh
@@ -23,3 +25,19 @@ def smooth_mesh(bricks: int) -> CellMesh:
     x, y, z = points.T
     values = np.sin(5 * x + y) + np.cos(4 * y - z) + np.sin(3.5 * z + 1.5 * x * y)
     return CellMesh(points, np.concatenate(tets).astype(np.int32), np.empty((0, 8), np.int32), values)
+
+
+def vtk_grid(mesh: CellMesh) -> Any:
+    """The mesh as VTK has it."""
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+    grid, points, cells = vtk.vtkUnstructuredGrid(), vtk.vtkPoints(), vtk.vtkCellArray()
+    points.SetData(numpy_to_vtk(mesh.points, deep=True))
+    cells.SetData(4, numpy_to_vtkIdTypeArray(mesh.tets.astype(np.int64).ravel(), deep=True))
+    grid.SetPoints(points)
+    grid.SetCells(vtk.VTK_TETRA, cells)
+    values = numpy_to_vtk(mesh.values, deep=True)
+    values.SetName("values")
+    grid.GetPointData().SetScalars(values)
+    return grid
