@@ -13,14 +13,15 @@
 
 namespace isocore::thinning {
 
-// Blocks of cells that follow one another, and of their lowest points. A point belongs to one block alone if it lies in
-// the block's part of the points and no other block's cell touches it.
+// Blocks of cells that follow one another, and of their lowest points. On every level, each four blocks of the level
+// below are one, up to the level that has a single block. A cell lies within its block if no other block's cell touches
+// any of its points.
 template <class Cell>
 class Blocks {
   public:
-    // cells: how many each block has, about.
+    // cells: how many each block has on the lowest level, about.
     Blocks(const Gluing<Cell>& gluing, std::size_t points, std::size_t cells)
-        : first_cell_{0}, first_point_{0}, shared_(points) {
+        : first_cell_{0}, first_point_{0}, apart_(points) {
         const auto lowest = [&](std::size_t cell) {
             return *std::min_element(gluing.record(cell), gluing.record(cell) + Cell::kCorners);
         };
@@ -36,26 +37,39 @@ class Blocks {
     }
 
     std::size_t size() const { return first_cell_.size() - 1; }
+    // How many blocks a level has.
+    std::size_t size(unsigned level) const { return parent(size() - 1, level) + 1; }
+    static std::size_t parent(std::size_t block, unsigned level) { return block >> 2 * level; }
+
     std::size_t first_cell(std::size_t block) const { return first_cell_[block]; }
+    std::size_t of(std::size_t cell) const {
+        return static_cast<std::size_t>(std::upper_bound(first_cell_.begin() + 1, first_cell_.end() - 1, cell) -
+                                        first_cell_.begin() - 1);
+    }
     bool has(std::size_t block, std::int32_t point) const {
         return point >= first_point_[block] && point < first_point_[block + 1];
     }
-    void share(std::int32_t point) { shared_[static_cast<std::size_t>(point)] = 1; }
 
-    bool inner(const std::int32_t* corners, std::size_t block) const {
-        bool inner = true;
+    // A cell of this block touches a point that lies in another's part of the points.
+    void share(std::int32_t point, std::size_t block) {
+        const auto owner = static_cast<std::size_t>(
+            std::upper_bound(first_point_.begin() + 1, first_point_.end() - 1, point) - first_point_.begin() - 1);
+        std::uint8_t& level = apart_[static_cast<std::size_t>(point)];
+        while (parent(owner, level) != parent(block, level)) ++level;
+    }
+
+    bool within(const std::int32_t* corners, unsigned level) const {
+        bool within = true;
         for (std::size_t n = 0; n < Cell::kCorners; ++n)
-            inner &= corners[n] < first_point_[block + 1] && !shared_[static_cast<std::size_t>(corners[n])];
-        return inner;
+            within &= apart_[static_cast<std::size_t>(corners[n])] <= level;
+        return within;
     }
 
   private:
     std::vector<std::size_t> first_cell_;
     std::vector<std::int32_t> first_point_;
-    std::vector<std::uint8_t> shared_;  // by point
+    std::vector<std::uint8_t> apart_;  // by point: the first level on which all cells at it are of one block
 };
-
-enum : std::uint8_t { kHasLower = 1, kHasHigher = 2 };
 
 // Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners across
 // it may both be.
@@ -81,13 +95,12 @@ std::size_t count_cells(const Gluing<Cell>& gluing, const Array<double>& heights
         std::int32_t point, cell;
         std::uint8_t marks;
     };
-    std::vector<std::uint8_t> marks(heights.size());
     remaining.points().resize(heights.size());
     const auto add = [&](std::int32_t point, std::int32_t cell, std::uint8_t seen) {
         Touching& touching = remaining.at(point);
         ++touching.count;
         touching.survivor ^= cell;
-        marks[static_cast<std::size_t>(point)] |= seen;
+        touching.marks = (touching.marks | seen) & (kHasLower | kHasHigher);
     };
     std::vector<std::vector<Elsewhere>> elsewhere(blocks.size());
     parallel_for(threads, blocks.size(), [&](std::size_t block) {
@@ -104,20 +117,14 @@ std::size_t count_cells(const Gluing<Cell>& gluing, const Array<double>& heights
             }
         }
     });
-    for (const auto& of_block : elsewhere) {
-        for (const Elsewhere& each : of_block) {
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+        for (const Elsewhere& each : elsewhere[block]) {
             add(each.point, each.cell, each.marks);
-            blocks.share(each.point);
+            blocks.share(each.point, block);
         }
     }
-    std::size_t extrema = 0;
-    for (std::size_t point = 0; point < heights.size(); ++point) {
-        Touching& touching = remaining.points()[point];
-        if (touching.count == 0 || marks[point] == (kHasLower | kHasHigher)) continue;
-        touching.extremum = 1;
-        ++extrema;
-    }
-    return extrema;
+    return static_cast<std::size_t>(std::ranges::count_if(
+        remaining.points(), [](const Touching& touching) { return touching.count > 0 && touching.extremum(); }));
 }
 
 }  // namespace isocore::thinning

@@ -13,6 +13,7 @@
 
 #include "common/large_pages.hpp"
 #include "common/parallel.hpp"
+#include "common/prefetch.hpp"
 #include "thinning/mesh/faces.hpp"
 
 namespace isocore::thinning {
@@ -22,7 +23,8 @@ using std::int32_t;
 using std::size_t;
 using std::uint32_t;
 
-constexpr size_t kChunk = std::size_t{1} << 16, kCellsPerRange = 1024, kMostRanges = 4096;
+constexpr size_t kChunk = std::size_t{1} << 16, kCellsPerRange = 1024, kMostRanges = 4096, kCellsAhead = 16,
+                 kPointsAhead = 8;
 
 // Ranges of as many points each; the last may have fewer.
 struct Ranges {
@@ -40,9 +42,10 @@ struct Ranges {
 };
 
 // A stable sort into ranges, chunk by chunk: for_each(chunk, add) calls add(range, item) for the chunk's items, twice.
+// The items come into `items`, which is made larger where it must be, and those of a range begin at its `start`.
 template <class Item, class ForEach>
-Array<Item> sorted_into(const Ranges& ranges, size_t chunks, std::vector<uint32_t>& start, int threads,
-                        const ForEach& for_each) {
+void sort_into(const Ranges& ranges, size_t chunks, Array<Item>& items, std::vector<uint32_t>& start, int threads,
+               const ForEach& for_each) {
     std::vector<std::vector<uint32_t>> places(chunks);
     parallel_for(threads, chunks, [&](size_t chunk) {
         places[chunk].resize(ranges.count);
@@ -56,13 +59,12 @@ Array<Item> sorted_into(const Ranges& ranges, size_t chunks, std::vector<uint32_
         for (auto& of_chunk : places) next += std::exchange(of_chunk[range], next);
     }
     start.push_back(next);
-    auto items = large_array<Item>(next);
+    if (items.size() < next) items = large_array<Item>(next);
     parallel_for(threads, chunks, [&](size_t chunk) {
         uint32_t* place = places[chunk].data();
         Item* out = items.data();
         for_each(chunk, [=](size_t range, const auto& item) { out[place[range]++] = item(); });
     });
-    return items;
 }
 
 template <class Cell, class Value>
@@ -104,43 +106,53 @@ class Gluer {
         std::vector<Crowd> crowds;
     };
 
+    const int32_t* record_at(int32_t place) const { return gluing_.record(static_cast<size_t>(place) / Cell::kFaces); }
     int32_t* record(size_t cell) { return gluing_.records.data() + kRecord<Cell> * cell; }
 
-    // Cells by their lowest points: into ranges first, then within each.
+    // Cells by their lowest points: into ranges first, then within each. The lowest points wait where the cells'
+    // numbers in the mesh will be.
     void order_cells() {
-        const Array<Sent> sent = sorted_into<Sent>(
-            ranges_, (count_ + kChunk - 1) / kChunk, first_cell_, threads_, [&](size_t chunk, const auto& add) {
-                const size_t end = std::min(count_, (chunk + 1) * kChunk);
-                for (size_t cell = chunk * kChunk; cell < end; ++cell) {
-                    const int32_t* ids = cells_ + Cell::kCorners * cell;
-                    int32_t low = number(ids[0]);
-                    for (size_t n = 1; n < Cell::kCorners; ++n) low = std::min(low, number(ids[n]));
-                    add(ranges_.of(low), [=] { return Sent{low, static_cast<int32_t>(cell)}; });
-                }
-            });
-        parallel_for(threads_, ranges_.count, [&](size_t range) { order_range(range, sent); });
+        Array<int32_t>& lowest = gluing_.original;
+        const size_t chunks = (count_ + kChunk - 1) / kChunk;
+        parallel_for(threads_, chunks, [&](size_t chunk) {
+            for (size_t cell = chunk * kChunk; cell < std::min(count_, (chunk + 1) * kChunk); ++cell) {
+                const int32_t* ids = cells_ + Cell::kCorners * cell;
+                lowest[cell] = number(ids[0]);
+                for (size_t n = 1; n < Cell::kCorners; ++n) lowest[cell] = std::min(lowest[cell], number(ids[n]));
+            }
+        });
+        sort_into(ranges_, chunks, sent_, first_cell_, threads_, [&](size_t chunk, const auto& add) {
+            for (size_t cell = chunk * kChunk; cell < std::min(count_, (chunk + 1) * kChunk); ++cell) {
+                const int32_t low = lowest[cell];
+                add(ranges_.of(low), [=] { return Sent{low, static_cast<int32_t>(cell)}; });
+            }
+        });
+        parallel_for(threads_, ranges_.count, [&](size_t range) { order_range(range); });
         for (const Found& found : odd_) any_collapsed_ |= !found.collapsed.empty();
         group_.back() = static_cast<uint32_t>(count_);
     }
 
     int32_t number(int32_t point) const { return points_.number[static_cast<size_t>(point)]; }
 
-    void order_range(size_t range, const Array<Sent>& sent) {
+    void order_range(size_t range) {
         const int32_t base = ranges_.first(range);
         uint32_t* group = group_.data() + base;
         const size_t size = ranges_.size(range);
         std::fill_n(group, size, 0u);
-        for (size_t n = first_cell_[range]; n < first_cell_[range + 1]; ++n) ++group[sent[n].point - base];
+        for (size_t n = first_cell_[range]; n < first_cell_[range + 1]; ++n) ++group[sent_[n].point - base];
         uint32_t next = first_cell_[range];
         std::vector<uint32_t> place(size);
         for (size_t n = 0; n < size; ++n) {
             place[n] = next;
             next += std::exchange(group[n], next);
         }
-        for (size_t n = first_cell_[range]; n < first_cell_[range + 1]; ++n) {
-            const size_t cell = place[static_cast<size_t>(sent[n].point - base)]++;
-            const auto mine = static_cast<size_t>(sent[n].place);
-            gluing_.original[cell] = sent[n].place;
+        const size_t end = first_cell_[range + 1];
+        for (size_t n = first_cell_[range]; n < end; ++n) {
+            if (n + kCellsAhead < end) ISOCORE_PREFETCH(corners(sent_[n + kCellsAhead].place));
+            if (n + kPointsAhead < end) prefetch_points(corners(sent_[n + kPointsAhead].place));
+            const size_t cell = place[static_cast<size_t>(sent_[n].point - base)]++;
+            const auto mine = static_cast<size_t>(sent_[n].place);
+            gluing_.original[cell] = sent_[n].place;
             const auto ids = mesh::upright<Cell>(field_, cells_ + Cell::kCorners * mine);
             int32_t* out = record(cell);
             for (size_t corner = 0; corner < Cell::kCorners; ++corner) out[corner] = number(ids[corner]);
@@ -151,36 +163,39 @@ class Gluer {
         }
     }
 
+    const int32_t* corners(int32_t cell) const { return cells_ + Cell::kCorners * static_cast<size_t>(cell); }
+
+    void prefetch_points(const int32_t* ids) const {
+        for (size_t n = 0; n < Cell::kCorners; ++n) {
+            ISOCORE_PREFETCH(field_.point(ids[n]));
+            ISOCORE_PREFETCH(points_.number.data() + ids[n]);
+        }
+    }
+
     // Calls visit(face, points) for the faces of a cell that have its lowest point, or for those that have not.
     template <class Visit>
-    void for_faces(size_t cell, bool own, const Visit& visit) const {
+    void visit_faces(size_t cell, bool with_lowest, const Visit& visit) const {
         const int32_t* ids = gluing_.record(cell);
-        if (any_collapsed_ && is_collapsed<Cell>(ids)) return;
-        const mesh::Mask others = kOpposite<Cell>[lowest_corner<Cell>(ids)];
-        for (mesh::Mask left = own ? ~others & ((mesh::Mask{1} << Cell::kFaces) - 1) : others; left; left &= left - 1) {
-            const auto face = static_cast<size_t>(std::countr_zero(left));
-            visit(face, named_points(Cell{}, ids, face));
-        }
+        if (!any_collapsed_ || !is_collapsed<Cell>(ids)) for_faces(Cell{}, ids, with_lowest, visit);
     }
 
     // Faces that do not have their cell's lowest point are sent to the range of their own. Then each range has all
     // faces of its points.
     void pair_faces() {
         std::vector<uint32_t> start;
-        const Array<Sent> sent = sorted_into<Sent>(
-            ranges_, (count_ + kChunk - 1) / kChunk, start, threads_, [&](size_t chunk, const auto& add) {
-                const size_t end = std::min(count_, (chunk + 1) * kChunk);
-                for (size_t cell = chunk * kChunk; cell < end; ++cell) {
-                    for_faces(cell, false, [&](size_t face, const std::array<int32_t, 4>& points) {
-                        const Sent item{points[0], static_cast<int32_t>(Cell::kFaces * cell + face)};
-                        add(ranges_.of(points[0]), [=] { return item; });
-                    });
-                }
-            });
+        const size_t chunks = (count_ + kChunk - 1) / kChunk;
+        sort_into(ranges_, chunks, sent_, start, threads_, [&](size_t chunk, const auto& add) {
+            for (size_t cell = chunk * kChunk; cell < std::min(count_, (chunk + 1) * kChunk); ++cell) {
+                visit_faces(cell, false, [&](size_t face, const std::array<int32_t, 4>& points) {
+                    const Sent item{points[0], static_cast<int32_t>(Cell::kFaces * cell + face)};
+                    add(ranges_.of(points[0]), [=] { return item; });
+                });
+            }
+        });
         parallel_for(
             threads_, ranges_.count, [] { return Matcher(); },
             [&](Matcher& matcher, size_t range) {
-                pair_range(range, sent.data() + start[range], start[range + 1] - start[range], matcher);
+                pair_range(range, sent_.data() + start[range], start[range + 1] - start[range], matcher);
             });
     }
 
@@ -197,11 +212,12 @@ class Gluer {
                          last = group_[static_cast<size_t>(base) + n + 1];
             matcher.clear(Cell::kFaces * (last - first) + end[n] - begin);
             for (size_t cell = first; cell < last; ++cell) {
-                for_faces(cell, true, [&](size_t face, const std::array<int32_t, 4>& points) {
+                visit_faces(cell, true, [&](size_t face, const std::array<int32_t, 4>& points) {
                     see(range, points, static_cast<int32_t>(Cell::kFaces * cell + face), matcher);
                 });
             }
             for (size_t at = begin; at < end[n]; ++at) {
+                if (at + kCellsAhead < count) ISOCORE_PREFETCH(record_at(places[at + kCellsAhead]));
                 const auto place = static_cast<size_t>(places[at]);
                 const int32_t* ids = gluing_.record(place / Cell::kFaces);
                 see(range, named_points(Cell{}, ids, place % Cell::kFaces), places[at], matcher);
@@ -269,6 +285,7 @@ class Gluer {
     Ranges ranges_;
     std::vector<uint32_t> first_cell_;  // of every range
     Array<uint32_t> group_;             // of every point: the first cell whose lowest point it is
+    Array<Sent> sent_;                  // to ranges: cells first, faces then
     std::vector<Found> odd_;
     bool any_collapsed_ = false;
     int threads_;

@@ -20,6 +20,26 @@ std::int32_t neighbour(const std::int32_t* record, std::size_t face) {
     return twin < 0 ? -1 : twin / static_cast<std::int32_t>(Cell::kFaces);
 }
 
+// The edges and corners of every set of faces.
+struct Closure {
+    std::uint16_t edges = 0;
+    std::uint8_t corners = 0;
+};
+
+template <class Cell>
+inline constexpr auto kClosure = [] {
+    std::array<Closure, std::size_t{1} << Cell::kFaces> closures{};
+    for (std::size_t faces = 0; faces < closures.size(); ++faces) {
+        for (std::size_t face = 0; face < Cell::kFaces; ++face) {
+            if (!(faces >> face & 1)) continue;
+            closures[faces].edges = static_cast<std::uint16_t>(closures[faces].edges | Cell::kShape.face_edges[face]);
+            closures[faces].corners =
+                static_cast<std::uint8_t>(closures[faces].corners | Cell::kShape.face_corners[face]);
+        }
+    }
+    return closures;
+}();
+
 // The faces at an edge of a cell.
 template <class Cell>
 inline constexpr auto kFacesAtEdge = [] {
@@ -33,23 +53,43 @@ inline constexpr auto kFacesAtEdge = [] {
     return faces;
 }();
 
-// The other face at the edge from point a to point b of a cell that was entered through a face at it.
-inline std::size_t face_beyond(mesh::Tet, const std::int32_t* record, std::int32_t a, std::int32_t b,
-                               std::size_t entered) {
-    std::size_t beyond = 6 - entered;  // the corners' numbers add up to 6; a face has that of the corner it lacks
-    for (std::size_t n = 0; n < 4; ++n) beyond -= record[n] == a || record[n] == b ? n : 0;
-    return beyond;
-}
-
-inline std::size_t face_beyond(mesh::Hex, const std::int32_t* record, std::int32_t a, std::int32_t b,
-                               std::size_t entered) {
-    mesh::Mask both = 0;
-    for (std::size_t n = 0; n < 8; ++n) both |= mesh::Mask{record[n] == a || record[n] == b} << n;
-    for (std::size_t face = 0; face < 6; ++face) {
-        if (face != entered && (mesh::Hex::kShape.face_corners[face] & both) == both) return face;
+// Which face comes next on the way around an edge. In a tetrahedron that was entered, it is opposite to the corner that
+// the face behind has beside the edge, and the corner opposite to the face behind is the one of the next such face.
+template <class Cell>
+class Turning {
+  public:
+    Turning(const std::int32_t* record, std::size_t edge, std::size_t face)
+        : beside_(record[kFacesAtEdge<Cell>[edge][kFacesAtEdge<Cell>[edge][0] == face]]) {
+        static_assert(Cell::kCorners == 4);
     }
-    return entered;
-}
+    std::size_t face_beyond(const std::int32_t* record, std::size_t entered) {
+        std::size_t beyond = 0;
+        for (std::size_t n = 1; n < 4; ++n) beyond += n * (record[n] == beside_);
+        beside_ = record[entered];
+        return beyond;
+    }
+
+  private:
+    std::int32_t beside_;
+};
+
+template <>
+class Turning<mesh::Hex> {
+  public:
+    Turning(const std::int32_t* record, std::size_t edge, std::size_t)
+        : a_(record[mesh::Hex::kShape.ends[edge][0]]), b_(record[mesh::Hex::kShape.ends[edge][1]]) {}
+    std::size_t face_beyond(const std::int32_t* record, std::size_t entered) const {
+        mesh::Mask both = 0;
+        for (std::size_t n = 0; n < 8; ++n) both |= mesh::Mask{record[n] == a_ || record[n] == b_} << n;
+        for (std::size_t face = 0; face < 6; ++face) {
+            if (face != entered && (mesh::Hex::kShape.face_corners[face] & both) == both) return face;
+        }
+        return entered;
+    }
+
+  private:
+    std::int32_t a_, b_;
+};
 
 // Walks around an edge of a cell from one of the two faces there, and calls visit(cell) for the cells it comes to until
 // that returns true or the walk is back at the start. Returns where it left: kFaces * cell + face at the boundary, -1
@@ -58,14 +98,14 @@ template <class Cell, class Visit>
 std::int32_t walk_around(const std::int32_t* records, std::size_t start, std::size_t edge, std::size_t face,
                          const Visit& visit) {
     const std::int32_t* record = records + kRecord<Cell> * start;
-    const std::int32_t a = record[Cell::kShape.ends[edge][0]], b = record[Cell::kShape.ends[edge][1]];
+    Turning<Cell> turning(record, edge, face);
     for (std::size_t cell = start;;) {
         const std::int32_t twin = record[Cell::kCorners + face];
         if (twin < 0) return static_cast<std::int32_t>(Cell::kFaces * cell + face);
         cell = static_cast<std::size_t>(twin) / Cell::kFaces;
         if (cell == start || visit(cell)) return -1;
         record = records + kRecord<Cell> * cell;
-        face = face_beyond(Cell{}, record, a, b, static_cast<std::size_t>(twin) % Cell::kFaces);
+        face = turning.face_beyond(record, static_cast<std::size_t>(twin) % Cell::kFaces);
     }
 }
 

@@ -18,10 +18,14 @@
 
 namespace isocore::thinning {
 
+enum : std::uint8_t { kHasLower = 1, kHasHigher = 2 };
+
 struct Touching {
-    std::uint32_t extremum : 1 = 0;
-    std::uint32_t count : 31 = 0;
+    std::uint32_t marks : 2 = 0;  // which neighbours the point has in the whole mesh
+    std::uint32_t count : 30 = 0;
     std::int32_t survivor = 0;  // the XOR of the remaining cells' ids
+
+    bool extremum() const { return marks != (kHasLower | kHasHigher); }
 };
 
 template <class Cell>
@@ -77,12 +81,7 @@ class Remaining {
     Used used(std::size_t cell) const {
         Used out;
         out.faces = used_faces(cell);
-        Mask edges = 0, corners = 0;
-        for (Mask left = out.faces; left != 0; left &= left - 1) {
-            const auto face = static_cast<std::size_t>(std::countr_zero(left));
-            edges |= Cell::kShape.face_edges[face];
-            corners |= Cell::kShape.face_corners[face];
-        }
+        Mask edges = kClosure<Cell>[out.faces].edges, corners = kClosure<Cell>[out.faces].corners;
         const std::int32_t* mine = record(cell);
         for (Mask left = ~corners & kAllCorners; left != 0; left &= left - 1) {
             const auto corner = static_cast<std::size_t>(std::countr_zero(left));
@@ -102,7 +101,7 @@ class Remaining {
     // Would its removal be safe, and leave every extremum in a remaining cell?
     bool is_safe(std::size_t cell, const Used& used) const {
         for (Mask left = ~used.corners & kAllCorners; left != 0; left &= left - 1) {
-            if (points_[static_cast<std::size_t>(record(cell)[std::countr_zero(left)])].extremum) return false;
+            if (points_[static_cast<std::size_t>(record(cell)[std::countr_zero(left)])].extremum()) return false;
         }
         return is_connected(Cell{}, used);
     }
@@ -112,13 +111,8 @@ class Remaining {
         const std::int32_t* mine = record(cell);
         state_[cell] |= kRemoved;
         outside_at_[cell] = outside;
-        Mask edges = used.edges;
-        for (Mask left = used.faces; left != 0; left &= left - 1) {
-            const auto face = static_cast<std::size_t>(std::countr_zero(left));
-            edges &= ~Cell::kShape.face_edges[face];
-            queue(neighbour<Cell>(mine, face), waiting);
-        }
-        for (; edges != 0; edges &= edges - 1) {
+        queue_beside(cell, used.faces, waiting);
+        for (Mask edges = used.edges & ~Mask{kClosure<Cell>[used.faces].edges}; edges != 0; edges &= edges - 1) {
             const auto edge = static_cast<std::size_t>(std::countr_zero(edges));
             std::int32_t last = -1;
             if (around(cell, edge, 2, &last) == 1) queue(last, waiting);
@@ -146,6 +140,24 @@ class Remaining {
     }
 
   private:
+    // Queues the cells across these faces, as queue does: which of them wait already is unpredictable, so there is no
+    // branch on it. A cell that is not there stands for the one that is gone, which nothing is done to.
+    void queue_beside(std::size_t cell, Mask faces, Array<std::int32_t>& waiting) {
+        const std::int32_t* mine = record(cell);
+        std::size_t count = waiting.size();
+        waiting.resize(count + Cell::kFaces);
+        for (std::size_t n = 0; n < Cell::kFaces; ++n) {
+            const bool there = faces >> n & 1;
+            const std::int32_t across = there ? neighbour<Cell>(mine, n) : static_cast<std::int32_t>(cell);
+            std::uint8_t& state = state_[static_cast<std::size_t>(across)];
+            const bool fresh = state == 0;
+            state = fresh ? std::uint8_t{kQueued} : state;
+            waiting[count] = across;
+            count += fresh;
+        }
+        waiting.resize(count);
+    }
+
     enum : std::uint8_t { kRemoved = 1, kQueued = 2, kLoose = 4 };
     static constexpr Mask kAllCorners = (Mask{1} << Cell::kCorners) - 1, kAllEdges = (Mask{1} << Cell::kEdges) - 1;
 

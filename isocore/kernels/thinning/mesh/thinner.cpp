@@ -2,8 +2,9 @@
 // Visualization 1996; "Fast Isosurface Generation Using the Volume Thinning Algorithm", IEEE TVCG 7(1), 2001.
 //
 // The paper's rules for its classes C1 to C4 are replaced by one that is both safer and thinner (safe_rule.hpp;
-// README.md says where we depart). Cells go block by block first, on several threads: those all of whose points belong
-// to one block alone, around a void that is opened in its midst. What remains, the rims of blocks, goes after that.
+// README.md says where we depart). Cells go block by block first, on several threads: those that touch no other
+// block's, around a void that is opened in its midst. What remains, the rims of blocks, goes as rims within larger
+// blocks.
 #include "thinning/mesh/thinner.hpp"
 
 #include <algorithm>
@@ -37,22 +38,34 @@ class Thinner {
 
     Skeleton run() {
         outsides_.join_boundary();
-        const size_t voids = outsides_.add(blocks_.size());
-        parallel_for(threads_, blocks_.size(),
-                     [&](size_t block) { thin_block(block, static_cast<int32_t>(voids + block)); });
-        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
-            if (!left_.remains(cell)) continue;
-            remaining_.push_back(static_cast<int32_t>(cell));
-            if (left_.used_faces(cell) != kAllFaces) left_.queue(static_cast<int32_t>(cell), waiting_);
+        std::vector<Array<int32_t>> waiting(blocks_.size());
+        for (const int32_t place : gluing_.boundary) {
+            const auto cell = static_cast<size_t>(place) / Cell::kFaces;
+            left_.queue(static_cast<int32_t>(cell), waiting[blocks_.of(cell)]);
         }
-        remove_simple(waiting_);
+        const size_t voids = outsides_.add(blocks_.size());
+        parallel_for(threads_, blocks_.size(), [&](size_t block) {
+            thin_block(0, waiting[block], [&](Array<int32_t>& found) { open_block(block, voids + block, found); });
+        });
+        for (unsigned level = 1; waiting.size() > 1; ++level) {
+            std::vector<Array<int32_t>> joined(blocks_.size(level));
+            for (size_t block = 0; block < waiting.size(); ++block) {
+                Array<int32_t>& here = joined[Blocks<Cell>::parent(block, 1)];
+                here.insert(here.end(), waiting[block].begin(), waiting[block].end());
+            }
+            waiting.swap(joined);
+            parallel_for(threads_, waiting.size(),
+                         [&](size_t block) { thin_block(level, waiting[block], [](Array<int32_t>&) {}); });
+        }
+        for (size_t cell = 0; cell < gluing_.cells; ++cell) {
+            if (left_.remains(cell)) remaining_.push_back(static_cast<int32_t>(cell));
+        }
         while (prick() || tunnel()) continue;
         return collect();
     }
 
   private:
     static constexpr size_t kRecordsAhead = 12, kNamedAhead = 6;
-    static constexpr Mask kAllFaces = (Mask{1} << Cell::kFaces) - 1;
 
     // The outside behind a face, or -1 where a cell remains. While blocks are thinned, outsides that are one by now may
     // still have several names.
@@ -68,15 +81,19 @@ class Thinner {
     }
 
     // Peels off the cells of a queue whose removal changes nothing but the size of what remains, and those whose
-    // boundary comes free by that.
+    // boundary comes free by that. Cells that may not go yet are kept for later, and still count as queued.
     template <class MayGo>
-    void remove_simple(Array<int32_t>& waiting, const MayGo& may_go) {
+    void remove_simple(Array<int32_t>& waiting, const MayGo& may_go, Array<int32_t>* later = nullptr) {
         for (size_t head = 0; head < waiting.size(); ++head) {
             if (head + kRecordsAhead < waiting.size()) left_.prefetch_record(waiting[head + kRecordsAhead]);
             if (head + kNamedAhead < waiting.size()) left_.prefetch_named(waiting[head + kNamedAhead]);
             const auto cell = static_cast<size_t>(waiting[head]);
+            if (!may_go(cell)) {
+                later->push_back(waiting[head]);
+                continue;
+            }
             left_.unqueue(cell);
-            if (!left_.remains(cell) || !may_go(cell)) continue;
+            if (!left_.remains(cell)) continue;
             const Used used = left_.used(cell);
             if (used.euler() == 1 && left_.is_safe(cell, used)) {
                 left_.remove(cell, used, any_outside(cell, used), waiting);
@@ -88,24 +105,26 @@ class Thinner {
         remove_simple(waiting, [](size_t) { return true; });
     }
 
-    // The cells of a block that touch no other block's, from its boundary inwards; where it has none, from its midst.
-    void thin_block(size_t block, int32_t new_void) {
-        const auto inner = [&](size_t cell) { return blocks_.inner(left_.record(cell), block); };
-        const size_t first = blocks_.first_cell(block), end = blocks_.first_cell(block + 1);
-        Array<int32_t> waiting;
-        const auto queue_if = [&](size_t cell) {
-            if (left_.used_faces(cell) != kAllFaces && inner(cell)) left_.queue(static_cast<int32_t>(cell), waiting);
-        };
-        for (size_t cell = first; cell < end; ++cell) queue_if(cell);
-        if (waiting.empty()) {
-            for (size_t n = 0; n < end - first; ++n) {
-                const size_t cell = first + (n + (end - first) / 2) % (end - first);
-                if (left_.loose(cell) || !inner(cell)) continue;
-                left_.remove(cell, left_.used(cell), new_void, waiting);
-                break;
-            }
+    // The cells within a block, from those that wait inwards; open(found) may find some where none do. What waits in
+    // the end are cells that other blocks touch.
+    template <class Open>
+    void thin_block(unsigned level, Array<int32_t>& waiting, const Open& open) {
+        const auto within = [&](size_t cell) { return blocks_.within(left_.record(cell), level); };
+        Array<int32_t> now, later;
+        for (const int32_t cell : waiting) (within(static_cast<size_t>(cell)) ? now : later).push_back(cell);
+        if (now.empty()) open(now);
+        remove_simple(now, within, &later);
+        waiting.swap(later);
+    }
+
+    // Opens a void in the midst of a block that no boundary reaches.
+    void open_block(size_t block, size_t new_void, Array<int32_t>& waiting) {
+        const size_t first = blocks_.first_cell(block), size = blocks_.first_cell(block + 1) - first;
+        for (size_t n = 0; n < size; ++n) {
+            const size_t cell = first + (n + size / 2) % size;
+            if (left_.loose(cell) || !blocks_.within(left_.record(cell), 0)) continue;
+            return left_.remove(cell, left_.used(cell), static_cast<int32_t>(new_void), waiting);
         }
-        remove_simple(waiting, inner);
     }
 
     // Opens voids: removes a cell whose free pieces lie at as many different outsides, so that no tunnel is dug.
