@@ -103,6 +103,9 @@ def sketch(
     vertices: _Real, triangles: _Int32, cell: float, most_triangles: int
 ) -> tuple[_Real, _Int32, _Int32]: ...
 
+# a coarser mesh to look at: which vertices are left, and the triangles of these
+def cluster(vertices: _Real, triangles: _Int32, most: int) -> tuple[_Int32, _Int32]: ...
+
 class AmbiguousFaces(NamedTuple):
     places: _Float64  # (n, 3), index space: the saddle of each face
     distances: _Float64  # (n,), of the saddle's value from the isovalue

@@ -1,7 +1,7 @@
 """Small copies of surfaces to look at: what a page shows instead of the meshes themselves.
 
-A copy is made where the surface is, from its arrays. Where that has too many triangles edges of it are contracted, so
-that no hole appears and no piece is lost; only where topology then allows no fewer are vertices of one cell made one.
+A copy is made where the surface is, from its arrays. Where that has too many triangles, vertices that hang together in
+one cell of a grid are made one, so that no hole appears: a few passes over the mesh, much less than it took to make it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from isocore.methods.simplifying import sketched
+from isocore import _kernels
 from isocore.surface import Point, Surface
 
 Colour = tuple[int, int, int]
@@ -25,9 +25,6 @@ BYTES_PER_TRIANGLE = 16
 #: In place of a value that is no number; all others are steps below it.
 _NO_VALUE = 65535
 _FEWEST_TRIANGLES = 200
-_TRIES = 6
-#: Of the unit box: the cells of a grid so fine still have numbers of 64 bits.
-_FINEST = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,10 +115,11 @@ def copied(
     if not most or not len(surface.triangles):
         return None
     try:
-        vertices, triangles, kept = _fewer(surface.vertices, surface.triangles, most)
-        normals = surface.normals if kept is not None else None
-        copy = _packed(vertices, triangles, None if normals is None else normals[kept], surface.offset, colour)
-        if copy is None or values is None or kept is None:
+        kept, triangles = _fewer(surface.vertices, surface.triangles, most)
+        # Where triangles are few, those tell better than single gradients how light falls on them.
+        normals = surface.normals if triangles is surface.triangles else None
+        copy = _packed(surface.vertices[kept], triangles, normals, surface.offset, colour)
+        if copy is None or values is None:
             return copy
         steps, limits = _in_steps(values[kept])
         return copy if limits is None else replace(copy, values=steps.tobytes(), value_range=limits)
@@ -129,33 +127,11 @@ def copied(
         return None
 
 
-def reduced(
-    vertices: npt.NDArray[Any],
-    triangles: npt.NDArray[np.int32],
-    most: int,
-    normals: npt.NDArray[np.float32] | None = None,
-) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], npt.NDArray[np.float32] | None]:
-    """At most `most` triangles, and the vertices they name, with their normals; (v, 3) each.
-
-    The mesh itself where it has no more, else one with the same pieces and handles wherever so many triangles can have
-    them. Elsewhere vertices in one cell of a grid are one.
-    """
-    vertices, triangles, kept = _fewer(vertices, triangles, most)
-    return vertices, triangles, None if normals is None or kept is None else normals[kept]
-
-
 def _fewer(
     vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], most: int
-) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], npt.NDArray[np.int32] | slice | None]:
-    """Vertices and triangles as `reduced` says, and which of the vertices these are; None where they are new ones."""
-    if len(triangles) <= most:
-        return vertices, triangles, slice(None)
-    places = _in_unit_box(vertices)
-    _, triangles, kept = sketched(places.astype(np.float32), triangles, most)
-    vertices = vertices[kept]
-    if len(triangles) <= most:
-        return vertices, triangles, kept
-    return (*_clustered(vertices, triangles, most), None)
+) -> tuple[npt.NDArray[np.int32] | slice, npt.NDArray[np.int32]]:
+    """Which of the vertices are left, and the triangles of these."""
+    return (slice(None), triangles) if len(triangles) <= most else _kernels.cluster(vertices, triangles, most)
 
 
 def _in_steps(values: npt.NDArray[Any]) -> tuple[npt.NDArray[np.uint16], tuple[float, float] | None]:
@@ -167,43 +143,6 @@ def _in_steps(values: npt.NDArray[Any]) -> tuple[npt.NDArray[np.uint16], tuple[f
     with np.errstate(over="ignore", invalid="ignore"):
         share = np.where(finite, (values / 2.0 - low / 2) / ((high / 2 - low / 2) or 1.0), 0.0)
     return np.where(finite, np.rint(share * (_NO_VALUE - 1)), _NO_VALUE).astype("<u2"), (low, high)
-
-
-def _clustered(
-    vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], most: int
-) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32]]:
-    """The mesh with the vertices of each cell of a coarse grid at their mean."""
-    places = _in_unit_box(vertices)
-    corners = places[triangles]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
-    cell = max(float(np.sqrt(2.5 * area / most)), _FINEST)
-    for _ in range(_TRIES):
-        number, kept = _by_cell(places, triangles, cell)
-        if len(kept) <= most:
-            shares = 1 / np.bincount(number)[number]
-            return np.stack([np.bincount(number, vertices[:, axis] * shares) for axis in range(3)], axis=1), kept
-        cell *= 1.1 * max(1.1, float(np.sqrt(len(kept) / most)))
-    return vertices[:0], triangles[:0]
-
-
-def _in_unit_box(vertices: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """The vertices moved and scaled, all axes alike, to lie in 0 to 1: coordinates may be as large as a double."""
-    halves = vertices.astype(np.float64) / 2
-    offsets = halves - halves.min(axis=0)
-    return np.asarray(offsets / (offsets.max() or 1.0))
-
-
-def _by_cell(
-    vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int32], cell: float
-) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.int32]]:
-    """The number of each vertex' cell, counted over those that hold any; the triangles between different cells."""
-    steps = np.floor(vertices / cell).astype(np.int64)
-    sides = steps.max(axis=0) + 1
-    keys = steps[:, 0] + sides[0] * (steps[:, 1] + sides[1] * steps[:, 2])
-    _, number = np.unique(keys, return_inverse=True)
-    merged = number[triangles]
-    alive = (merged[:, 0] != merged[:, 1]) & (merged[:, 1] != merged[:, 2]) & (merged[:, 2] != merged[:, 0])
-    return number, np.unique(merged[alive], axis=0).astype(np.int32)
 
 
 def _packed(

@@ -55,7 +55,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "job": {"choices", "errors", "labels", "piece_sizes", "readers/options", "views", "volume"},
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
-    "copies": {"surface", "methods/simplifying"},
+    "copies": {"surface"} | KERNELS,
     "readers": {"arrays", "digits", "errors", "volume", "cell_mesh", "carried"} | KERNELS,
     "readers/options": set(),
     "apart": KERNELS,

@@ -17,13 +17,10 @@ from click.testing import CliRunner
 from isocore.cli.main import isocore as program
 from small_files import ball, write_nifti
 
-from isocore.copies import copy_from_dict, reduced
+from isocore.copies import copy_from_dict
 from isocore.job import Job, Target
-from isocore.measurements import measure
 from isocore.pipeline import convert
 from isocore.report import BatchReport, RunReport, save_report, with_copies
-from isocore.surface import Surface
-from isocore.writers.read_back import read_mesh
 
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
@@ -255,15 +252,3 @@ def test_copies_of_surfaces_stay_within_their_bound(tmp_path: Path, limit: int) 
     added = (tmp_path / "run.html").stat().st_size - (tmp_path / "none.html").stat().st_size
     assert added <= limit + 300 * len(runs)
     assert (added > 0) == (limit > 0)
-
-
-def test_a_reduced_copy_keeps_the_shape(tmp_path: Path) -> None:
-    """Fewer triangles in the same box, every index in range."""
-    surfaces(tmp_path)
-    mesh = read_mesh(tmp_path / "ball_50.ply")
-    assert mesh is not None
-    vertices, triangles, _ = reduced(*mesh, 300)
-    form = measure(Surface(vertices, triangles))
-    assert form.watertight and form.components == 1
-    assert 50 < len(triangles) <= 300 and triangles.max() < len(vertices)
-    assert np.allclose(vertices.min(axis=0), mesh[0].min(axis=0), atol=2)

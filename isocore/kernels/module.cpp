@@ -8,6 +8,7 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_ambiguities(module);
     isocore::python::bind_marching_cubes(module);
     isocore::python::bind_surface(module);
+    isocore::python::bind_clusters(module);
     isocore::python::bind_marching_cells(module);
     isocore::python::bind_mesh_normals(module);
     isocore::python::bind_statistics(module);

@@ -20,6 +20,7 @@ void test_marching_cubes();
 void test_tubes();
 void test_thinning();
 void test_joining();
+void test_clusters();
 
 int main() {
     test_bits();
@@ -41,5 +42,6 @@ int main() {
     test_tubes();
     test_thinning();
     test_joining();
+    test_clusters();
     std::puts("kernels: all checks hold");
 }

@@ -9,6 +9,7 @@ namespace isocore::python {
 
 void bind_marching_cubes(nanobind::module_& module);
 void bind_surface(nanobind::module_& module);
+void bind_clusters(nanobind::module_& module);
 void bind_marching_cells(nanobind::module_& module);
 void bind_mesh_normals(nanobind::module_& module);
 void bind_statistics(nanobind::module_& module);
