@@ -98,11 +98,6 @@ def simplify(
     threads: int = 1,
 ) -> SimplifiedMesh: ...
 
-# a mesh to look at: vertices, triangles, and of each vertex its number before
-def sketch(
-    vertices: _Real, triangles: _Int32, cell: float, most_triangles: int
-) -> tuple[_Real, _Int32, _Int32]: ...
-
 # a coarser mesh to look at: which vertices are left, and the triangles of these
 def cluster(vertices: _Real, triangles: _Int32, most: int) -> tuple[_Int32, _Int32]: ...
 

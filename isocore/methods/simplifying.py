@@ -180,16 +180,6 @@ def facts_of(before: int, collapses: int, refused: Sequence[int], seconds: float
     )
 
 
-def sketched(
-    vertices: npt.NDArray[Any], triangles: npt.NDArray[np.int32], most: int
-) -> tuple[npt.NDArray[Any], npt.NDArray[np.int32], npt.NDArray[np.int32]]:
-    """A mesh to look at, with `most` triangles if it can: vertices, triangles, and of each vertex its number before.
-
-    Edges are contracted as in simplification, but topology and shapes alone are kept: nothing is bounded or proved.
-    """
-    return _kernels.sketch(vertices, triangles, _cell(vertices, triangles), most)
-
-
 def volume_simplifier(volume: Volume, options: Options, *, default: bool = False) -> Simplifier | None:
     """What is asked for a volume; None where nothing is. default: whether it is done unless it is refused."""
     given = options.max_error is not None

@@ -177,16 +177,3 @@ def test_numbers_of_vertices_that_are_not_there_are_refused() -> None:
     triangles = np.array([[0, 1, 2]], np.int32)
     with pytest.raises(ValueError, match="does not exist"):
         _kernels.simplify(vertices, triangles, vertices, triangles, 0.5)
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_a_sketch_keeps_pieces_handles_and_borders(seed: int) -> None:
-    """With as many triangles as asked for, or more where topology needs them; and its vertices are the mesh's."""
-    samples = np.asfortranarray(_blurred(np.random.default_rng(seed).normal(size=(14, 14, 14))))
-    vertices, triangles = _kernels.marching_cubes(samples, 0.0, False, seed % 2 == 0)[:2]
-    most = len(triangles) // 4
-    few, fewer, kept = _kernels.sketch(vertices, triangles, 1.0, most)
-    assert len(fewer) < len(triangles) / 2 and np.array_equal(few, vertices[kept])
-    before, after = _kernels.measure(vertices, triangles), _kernels.measure(few, fewer)
-    for name in ("components", "boundary_edges", "euler", "nonmanifold_edges", "misoriented_edges"):
-        assert getattr(before, name) == getattr(after, name), name

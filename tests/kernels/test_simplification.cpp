@@ -62,28 +62,11 @@ void simplify(int seed, const Dims& most, double bound, std::size_t most_triangl
     CHECK(found.vertices == again.vertices && found.triangles == again.triangles);
 }
 
-// A sketch: the counts fit, and it comes down to what was asked for or to what topology allows.
-void sketch(int seed, const Dims& most, std::size_t most_triangles) {
-    const Volume volume = volume_of(seed, most);
-    const auto marched = marching_cubes::march<float, float>({volume.samples.data(), volume.dims}, {});
-    const MeshArrays<float> mesh{marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(),
-                                 marched.triangles.size() / 3};
-    simplification::Options options;
-    options.max_error = std::numeric_limits<double>::infinity();
-    options.most_triangles = most_triangles;
-    options.is_sketch = true;
-    const Simplified<float> found = simplification::simplify(mesh, mesh, options);
-    CHECK(found.triangles.size() / 3 + 2 * found.facts.collapses == mesh.triangle_count);
-    CHECK(found.vertices.size() / 3 + found.facts.collapses == mesh.vertex_count);
-    CHECK(found.facts.collapses > 0);
-}
-
 }  // namespace
 
 void test_simplification() {
     for (int seed = 0; seed < 30; ++seed) simplify<float>(seed, {9, 8, 7}, 0.2 + 0.2 * (seed % 4), 0);
     for (int seed = 0; seed < 3; ++seed) simplify<double>(seed, {12, 13, 12}, 0.5, 0);
     for (int seed = 0; seed < 3; ++seed) simplify<float>(seed, {9, 9, 9}, std::numeric_limits<double>::infinity(), 20);
-    for (int seed = 0; seed < 6; ++seed) sketch(seed, {11, 10, 9}, 40);
     simplify<float>(1, {150, 8, 7}, 0.5, 0);  // several boxes
 }

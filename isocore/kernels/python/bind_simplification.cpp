@@ -1,13 +1,11 @@
 // bind_simplification.cpp - simplify(vertices, triangles, reference_vertices, reference_triangles, max_error, stretch,
-// other, cell, most_triangles, written, rounding, threads) and sketch(vertices, triangles, cell, most_triangles), once
-// per type of coordinates.
+// other, cell, most_triangles, written, rounding, threads), once per type of coordinates.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -61,25 +59,6 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
         nb::arg("stretch") = std::array<double, 3>{1, 1, 1}, nb::arg("other") = std::array<double, 3>{1, 1, 1},
         nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("written").noconvert() = nb::none(),
         nb::arg("rounding") = 0.0, nb::arg("threads") = 1);
-    module.def(
-        "sketch",
-        [=](const Rows<Real, 3>& vertices, const Triangles& triangles, double cell, std::size_t most_triangles) {
-            simplification::Options options;
-            options.max_error = std::numeric_limits<double>::infinity();
-            options.stretch = {1 / cell, 1 / cell, 1 / cell};
-            options.cell = cell;
-            options.most_triangles = std::max<std::size_t>(most_triangles, 1);
-            options.is_sketch = true;
-            simplification::Simplified<Real> out;
-            {
-                const nb::gil_scoped_release unlocked;
-                const auto mesh = arrays(vertices, triangles);
-                out = simplification::simplify(mesh, mesh, options);
-            }
-            return nb::make_tuple(to_numpy(std::move(out.vertices), 3), to_numpy(std::move(out.triangles), 3),
-                                  to_numpy(std::move(out.kept)));
-        },
-        nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("cell"), nb::arg("most_triangles"));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ bool Contraction<Real>::contract(const Ring& ring, std::size_t target) {
         count_ = 1;
         parts_[0].star.turn(ring, target);
     }
-    if (!are_allowed() || (!is_sketch_ && !are_apart())) return false;
+    if (!are_allowed() || !are_apart()) return false;
     commit();
     return true;
 }
@@ -62,7 +62,6 @@ bool Contraction<Real>::are_allowed() {
     for (std::size_t n = 0; n < count_; ++n) {
         if (!keeps_topology(parts_[n].star)) return refuse(Rule::link, parts_[n].star);
     }
-    if (is_sketch_) return true;
     if (mesh_.vertices[static_cast<std::size_t>(parts_[0].star.centre)].on_curve && !keeps_curve(parts_[0].star))
         return refuse(Rule::outward, parts_[0].star);
     for (std::size_t n = 0; n < count_; ++n) {
@@ -178,7 +177,7 @@ void Contraction<Real>::commit() {
     ++collapses;
     const auto centre = static_cast<std::size_t>(parts_[0].star.centre),
                target = static_cast<std::size_t>(parts_[0].star.target());
-    for (std::size_t p = 0; p < count_ && !is_sketch_; ++p) take_out(parts_[p]);
+    for (std::size_t p = 0; p < count_; ++p) take_out(parts_[p]);
     mesh_.quadrics[target].add(mesh_.quadrics[centre],
                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
     for (std::size_t p = 0; p < count_; ++p) enter_faces(parts_[p]);
@@ -211,7 +210,6 @@ void Contraction<Real>::enter_faces(const Part& part) {
         const std::int32_t number = star.triangles[n];
         Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
         triangle.corners[triangle.index_of(star.centre)] = star.target();
-        if (is_sketch_) continue;
         mesh_.proved[static_cast<std::size_t>(number)] = part.distances[n];
         if (count_ == 1) {
             const std::size_t first = crossings_.first_cube(n);

@@ -32,9 +32,6 @@ class Contraction {
     bool contract(const Ring& ring, std::size_t target);
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
-    // From now on the rules of topology and shape are all there is.
-    void sketch() { is_sketch_ = true; }
-    bool is_sketch() const { return is_sketch_; }
     // Of the last contraction: its star, or one for each sheet that meets on the curve.
     const Star& star(std::size_t n) const { return parts_[n].star; }
     std::size_t star_count() const { return count_; }
@@ -76,7 +73,6 @@ class Contraction {
     Mesh<Real>& mesh_;
     TriangleGrid& grid_;
     float limit_;
-    bool is_sketch_ = false;
     std::vector<Part> parts_{1};
     std::size_t count_ = 1;
     std::vector<const Star*> others_;

@@ -30,16 +30,12 @@ class Simplification {
           options_(options),
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
-          reference_(options.is_sketch ? MeshArrays<Real>{} : reference, cells_),
+          reference_(reference, cells_),
           mesh_(input, cells_, options.stretch, options.rounding),
           grid_(cells_, options.rounding),
           costs_(mesh_.vertex_count()) {
         for (int n = 0; n < std::max(options.threads, 1); ++n)
             workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, reference_, grid_, limit_));
-        if (options.is_sketch) {
-            for (auto& worker : workers_) worker->sketch();
-            return;
-        }
         for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options.max_error));
         enter_triangles();
         find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
@@ -63,8 +59,7 @@ class Simplification {
         std::vector<std::int32_t> movable;
         Contraction<Real>& worker = *workers_[0];
         const float farthest = limit_;
-        const float first = options_.is_sketch ? farthest : std::min(kFirstLimit, farthest);
-        for (limit_ = first;; limit_ = std::min(2 * limit_, farthest)) {
+        for (limit_ = std::min(kFirstLimit, farthest);; limit_ = std::min(2 * limit_, farthest)) {
             worker.set_limit(limit_);
             movable.clear();
             for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
@@ -92,7 +87,6 @@ class Simplification {
             }
         }
         out.facts.sheets.resize(input_.sheet_count);
-        if (options_.is_sketch) return out;
         measure(out.facts);
         describe_sheets(out.facts);
         return out;

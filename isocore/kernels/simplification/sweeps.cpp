@@ -111,7 +111,7 @@ void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contract
     }
     constexpr float kFirst = 1e-6f;
     constexpr int kWider = 3;
-    const bool is_wide = contraction.is_sketch() || most == std::numeric_limits<std::size_t>::max();
+    const bool is_wide = most == std::numeric_limits<std::size_t>::max();
     while (most > 0) {
         float cheapest = kInfinity;
         for (const std::int32_t v : vertices) cheapest = std::min(cheapest, costs[static_cast<std::size_t>(v)]);
@@ -119,7 +119,7 @@ void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contract
         int exponent = 0;
         std::frexp(std::max(cheapest, kFirst), &exponent);
         // The next power of two above, or one further on. Where a number of triangles is asked for, it is the order
-        // that keeps the error small; a sketch is looked at, not measured.
+        // that keeps the error small.
         const float limit = std::ldexp(1.0f, exponent + (is_wide ? kWider : 0));
         bool is_done = false;
         while (!is_done && most > 0) {

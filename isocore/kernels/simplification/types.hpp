@@ -26,9 +26,6 @@ struct Options {
     // How far writing moves a vertex at most, once it is brought back to these coordinates.
     double rounding = 0;
     int threads = 1;
-    // With a number of triangles: keep topology and shapes alone. Nothing is bounded, proved or measured, and triangles
-    // may meet: for a copy to look at, many times faster.
-    bool is_sketch = false;
 };
 
 // Why an edge was not contracted; README.md has the rules.
