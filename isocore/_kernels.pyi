@@ -305,10 +305,11 @@ def extrema_graph(records: _Int32, corners: int, faces: int, at_extremum: _Bytes
 
 # joining
 class JoinedPoints(NamedTuple):
-    with_: _Int32  # (n,) the lowest point that each is joined with, itself where that is none
-    joined: int  # points that are joined with another
+    number: _Int32  # (n,) of each point, which of those that are left it became
+    first: _Int32  # (k,) of each that is left, the lowest point that became it
 
-def join_points(points: _Float64, distance: float = 0.0, threads: int = 1) -> JoinedPoints: ...
+def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...
+
 class LabelCensus(NamedTuple):
     values: _Float64  # ascending
     counts: npt.NDArray[np.uint64]  # samples of each

@@ -7,6 +7,7 @@ that their place is. A field of cells stays as it is, and the cells are kept as 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +48,7 @@ def carried_fields(
 def joined_carried(part: Part, by: Joining) -> tuple[tuple[npt.NDArray[Any], ...], list[tuple[int, float]]]:
     """The carried fields with one row for each joined point; at how many points each differed, and by how much."""
     found, differing = [], []
-    used = used_points(part) if part.carried else None
+    used = cache(partial(used_points, part))
     for rows, of_cells in zip(part.carried, part.of_cells, strict=True):
         each = [] if of_cells else [joined_values(by, np.ascontiguousarray(column), used) for column in rows.T]
         found.append(np.stack([one.values for one in each], axis=1) if each else rows)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,20 +13,20 @@ from isocore import _kernels
 from isocore.readers.cell_splitting import mixed
 from isocore.readers.vtk_cells import Block
 
-_MOST_THREADS = 4  # readers are not told how many there may be; it is a matter of milliseconds
 #: Values differ by rounding where they differ by less than this part of the largest: sixteen steps of float32.
 _ROUNDING = 16 * 2.0**-23
+_CHUNK = 1 << 14
 
 
 @dataclass(frozen=True, slots=True)
 class Joining:
     """Which points became which.
 
-    number: (n,) int32 the new number of each point. first: (k,) the old number of each new one, ascending.
+    number: (n,) int32 the new number of each point. first: (k,) int32 the old number of each new one, ascending.
     """
 
     number: npt.NDArray[np.int32]
-    first: npt.NDArray[np.intp]
+    first: npt.NDArray[np.int32]
 
     @property
     def joined(self) -> int:
@@ -48,25 +47,24 @@ class JoinedValues:
 
 def joining(points: npt.NDArray[np.float64], distance: float) -> Joining | None:
     """Points at equal coordinates, or within `distance`; None where there are none. Linear in the points."""
-    found = _kernels.join_points(points, distance, min(_MOST_THREADS, os.cpu_count() or 1))
-    if not found.joined:
-        return None
-    own = found.with_ == np.arange(len(points), dtype=np.int32)
-    number = np.cumsum(own, dtype=np.int32) - np.int32(1)
-    return Joining(number[found.with_], np.flatnonzero(own))
+    found = _kernels.join_points(points, distance)
+    return None if len(found.first) == len(points) else Joining(found.number, found.first)
 
 
 def joined_values(
-    by: Joining, values: npt.NDArray[Any], used: npt.NDArray[np.bool_] | None = None
+    by: Joining, values: npt.NDArray[Any], points_used: Callable[[], npt.NDArray[np.bool_]]
 ) -> JoinedValues:
     """The value of the first point where they agree but for rounding, else their mean; NaN where one is NaN.
 
-    used: (n,) points that count, or None for all: what no cell names has no say.
+    points_used: tells which points count, (n,): what no cell names has no say. Not called where all values agree.
     """
     result = values[by.first]
-    members = np.arange(len(values)) if used is None else np.flatnonzero(used)
-    if used is not None:
-        result[by.number[members[::-1]]] = values[members[::-1]]  # of several the first stays
+    chunks = (slice(first, first + _CHUNK) for first in range(0, len(values), _CHUNK))
+    if all(np.array_equal(values[chunk], result[by.number[chunk]]) for chunk in chunks):
+        return JoinedValues(result)
+    used = points_used()
+    members = np.flatnonzero(used)
+    result[by.number[members[::-1]]] = values[members[::-1]]  # of several the first stays
     members = members[~_same(values[members], result[by.number[members]])]
     if not len(members):
         return JoinedValues(result)
@@ -111,7 +109,7 @@ def _averaged(
     values: npt.NDArray[Any],
     result: npt.NDArray[Any],
     numbers: npt.NDArray[np.int32],
-    used: npt.NDArray[np.bool_] | None,
+    used: npt.NDArray[np.bool_],
 ) -> JoinedValues:
     """`result` with means at `numbers`."""
     if not len(numbers):
@@ -119,7 +117,7 @@ def _averaged(
     place = np.full(len(by.first), -1, np.int32)
     place[numbers] = np.arange(len(numbers), dtype=np.int32)
     group = place[by.number]
-    mine = group >= 0 if used is None else (group >= 0) & used
+    mine = (group >= 0) & used
     group, own = group[mine], values[mine].astype(np.float64)
     with np.errstate(invalid="ignore", over="ignore"):
         total = np.bincount(group, weights=own, minlength=len(numbers))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -112,7 +113,7 @@ def _hung_together(
         joined = by.joined
         values = part.values
         if not of_cells:
-            found = joined_values(by, part.values, used_points(part))
+            found = joined_values(by, part.values, partial(used_points, part))
             values, differing, largest = found.values, found.differing, found.largest
         weights = None if part.weights is None else part.weights[by.first]
         carried, apart = joined_carried(part, by)

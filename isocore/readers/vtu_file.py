@@ -16,8 +16,9 @@ from threading import Lock
 
 from isocore.readers.vtu_blocks import BadBlock
 
-#: Where appended data are announced within so many bytes, they are left on the disk; else the file is read whole.
-_HEAD = 1 << 24
+#: Where appended data are announced within so many bytes, they are left on the disk; else the file is read whole. It is
+#: looked for in a few bytes first.
+_HEAD, _FEW = 1 << 24, 1 << 15
 #: From so many bytes on it pays to ask for large pages.
 _LARGE = 1 << 22
 #: Behind the start of that tag: the rest of it, and the underscore before the data.
@@ -39,10 +40,10 @@ class StoredFile:
 
     def tags(self) -> mmap | bytes:
         """From the first byte to the start of the appended data or beyond; all of a file that has none."""
-        if self.size <= _HEAD:
-            return self.all()
-        head = self.read(0, _HEAD)
-        return head if 0 <= head.find(_APPENDED) < _HEAD - _TAG else self.all()
+        for size in (_FEW, _HEAD):
+            if size < self.size and 0 <= (head := self.read(0, size)).find(_APPENDED) < size - _TAG:
+                return head
+        return self.all()
 
     def all(self) -> mmap | bytes:
         """Every byte; fewer than `size` where the file got shorter."""
@@ -50,24 +51,28 @@ class StoredFile:
 
     def read(self, first: int, end: int) -> mmap | bytes:
         """The bytes from `first` to before `end`, as far as they are there."""
-        room, filled = _room(end - first), 0
-        with self._lock, memoryview(room) as target:
+        size, filled = end - first, 0
+        with self._lock:
             self._file.seek(first)
-            while got := self._file.readinto(target[filled:]):  # one call takes two gigabytes at most
-                filled += got
-        if filled == end - first and isinstance(room, mmap):
-            return room
-        return bytes(room[:filled])
+            if size < _LARGE:
+                parts = []
+                while got := self._file.read(size - filled):
+                    parts.append(got)
+                    filled += len(got)
+                return b"".join(parts)
+            room = _room(size)
+            with memoryview(room) as target:
+                while count := self._file.readinto(target[filled:]):  # one call takes two gigabytes at most
+                    filled += count
+        return room if filled == size else room[:filled]
 
     def close(self) -> None:
         """Nothing is read any more; what was read stays."""
         self._file.close()
 
 
-def _room(size: int) -> mmap | bytearray:
+def _room(size: int) -> mmap:
     """Memory to read into, in large pages where the system has them: they are half the time of reading."""
-    if size < _LARGE:
-        return bytearray(size)
     if sys.platform == "win32":
         return mmap(-1, size)
     room = mmap(-1, size, flags=memory.MAP_PRIVATE | memory.MAP_ANONYMOUS)

@@ -1,4 +1,4 @@
-// bind_joining.cpp - join_points(points, distance, threads): which points of a mesh coincide.
+// bind_joining.cpp - join_points(points, distance): which points of a mesh coincide.
 #include "joining/join_points.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
@@ -7,18 +7,18 @@
 namespace isocore::python {
 
 void bind_joining(nb::module_& module) {
-    const NamedTuple joined_points(module, "JoinedPoints", {"with_", "joined"});
+    const NamedTuple joined_points(module, "JoinedPoints", {"number", "first"});
     module.def(
         "join_points",
-        [=](const Rows<double, 3>& points, double distance, int threads) {
+        [=](const Rows<double, 3>& points, double distance) {
             JoinedPoints found;
             {
                 const nb::gil_scoped_release unlocked;
-                found = join_points(points.data(), points.shape(0), distance, threads);
+                found = join_points(points.data(), points.shape(0), distance);
             }
-            return joined_points(to_numpy(std::move(found.with)), found.joined);
+            return joined_points(to_numpy(std::move(found.number)), to_numpy(std::move(found.first)));
         },
-        nb::arg("points").noconvert(), nb::arg("distance") = 0.0, nb::arg("threads") = 1);
+        nb::arg("points").noconvert(), nb::arg("distance") = 0.0);
 }
 
 }  // namespace isocore::python
