@@ -69,7 +69,7 @@ class Wanted:
 @option_of("Report")("--json", "as_json", is_flag=True, help="The same as JSON on stdout.")
 @click.pass_context
 def bench(
-    context: click.Context, files: tuple[Path, ...], threads: int | None, as_json: bool, **chosen: Any
+    context: click.Context, /, files: tuple[Path, ...], threads: int | None, as_json: bool, **chosen: Any
 ) -> None:
     """Print the papers' tables for each FILE: a volume's triangles, time and error by block size and error bound, or
     the time every way to find an isosurface's cells takes in a mesh.

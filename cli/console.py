@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from isocore.report import BatchReport
 
 #: What GitHub reads as a command: two colons that begin a line, and an older form anywhere.
-_COMMAND = re.compile(r"^\s*::|##\[")
+_COMMAND = r"^\s*::|##\["
 
 #: A run shorter than this shows no progress bar.
 _PATIENCE_SECONDS = 1.0
@@ -137,7 +137,7 @@ def unarmed(text: str) -> str:
     """The line, so that GitHub takes it for no command of its own, whatever names it holds; as it is elsewhere."""
     if os.environ.get("GITHUB_ACTIONS") != "true":
         return text
-    return _COMMAND.sub(lambda found: found[0].replace(":", "\\x3a", 1).replace("[", "\\x5b"), text)
+    return re.sub(_COMMAND, lambda found: found[0].replace(":", "\\x3a", 1).replace("[", "\\x5b"), text)
 
 
 def screen_width(stream: TextIO) -> int | None:

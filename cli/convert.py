@@ -24,6 +24,7 @@ from .lists import listed
 from .options import default_threads
 
 if TYPE_CHECKING:
+    from isocore.batches.steps import StepChoice
     from isocore.job import Job
     from isocore.report import BatchReport
 
@@ -52,7 +53,7 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
 
     batch, all_written = run_and_report(jobs, options, start)
     if options.as_json:
-        from isocore.report import render_json
+        from isocore.report.render_json import render_json
 
         click.echo(render_json(batch), nl=False)
     context.exit(exit_code(batch) if all_written else 1)
@@ -77,9 +78,6 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     check_colours(options.carry, options.colour, **maps)
 
     from isocore.batches.plan import Naming, check_template, find_inputs, plan  # late: readers bring numpy
-    from isocore.batches.steps import StepChoice
-    from isocore.copies import triangles_each
-    from isocore.report.copies_found import copies_path, has_copies_beside
 
     labels = label_request(options)
     pattern = _pattern(options, format_, requirements)
@@ -91,7 +89,10 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     )
     choices = _choices_of(options)
     written = [("--report", path) for path in options.reports]
-    if any(path.suffix.lower() == ".html" for path in options.reports):
+    pages = [path for path in options.reports if path.suffix.lower() == ".html"]
+    if pages:
+        from isocore.report.copies_found import copies_path, has_copies_beside
+
         written += [("--report", copies_path(path)) for path in options.reports if has_copies_beside(path)]
     more = (("--depfile", options.depfile), ("--ambiguities", options.ambiguities))
     written += [(option, path) for option, path in more if path is not None]
@@ -104,7 +105,7 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
         pattern,
         naming,
         volumes=options.reading.volume,
-        steps=StepChoice(options.steps or (), options.times or ()),
+        steps=_steps(options),
         labels=labels,
         merge=options.merge_isovalues,
         written=written,
@@ -112,11 +113,22 @@ def planned_jobs(options: ConvertOptions) -> list[Job]:
     )
     if options.ambiguities and (len(jobs) != 1 or len(jobs[0].targets) != 1):
         raise click.UsageError(f"--ambiguities {options.ambiguities}: is one file; give one input and one isovalue")
-    pages = [path for path in options.reports if path.suffix.lower() == ".html"]
-    surfaces = sum(len(job.targets) for job in jobs)
-    page_triangles = triangles_each(options.page_size, surfaces) if pages else 0
+    page_triangles = 0
+    if pages:
+        from isocore.copies import triangles_each
+
+        page_triangles = triangles_each(options.page_size, sum(len(job.targets) for job in jobs))
     threads = options.threads or max(1, default_threads() // min(options.at_once, len(jobs)))
     return [replace(job, options=replace(job.options, threads=threads), page_triangles=page_triangles) for job in jobs]
+
+
+def _steps(options: ConvertOptions) -> StepChoice | None:
+    """The steps of series that are meant; None for all."""
+    if not options.steps and not options.times:
+        return None
+    from isocore.batches.steps import StepChoice
+
+    return StepChoice(options.steps or (), options.times or ())
 
 
 def _choices_of(options: ConvertOptions) -> tuple[Choice, ...]:

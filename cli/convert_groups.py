@@ -9,7 +9,8 @@ from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
 from .options import OFFSETS, PATH, reading_and_offset_options
-from .values import Colour, Isovalue, Jobs, LabelList, Memory, StepNumbers, Times, Words
+from .steps import StepNumbers, Times
+from .values import Colour, Isovalue, Jobs, LabelList, Memory, Words
 
 _input, _isovalue, _, _, _output, _batch, _report = map(option_of, GROUPS)
 

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 def label_request(options: ConvertOptions) -> LabelRequest | None:
     """The labels asked for, or None where isovalues are; the table of names is read. Raises UsageError for nonsense."""
     if options.labels is None:
-        for given, name in ((options.background is not None, "background"), (options.label_table, "names")):
+        for given, name in ((options.background is not None, "background"), (options.label_table is not None, "names")):
             if given:
                 raise click.UsageError(f"--{name}: is about label maps; give --labels all, or a list of them")
         return None
     for given, option in (
-        (options.isovalues, "-i"),
+        (bool(options.isovalues), "-i"),
         (options.backend != "auto", "-b"),
-        (options.ambiguities, "--ambiguities"),
+        (options.ambiguities is not None, "--ambiguities"),
         (options.cap, "--cap"),
         (options.merge_isovalues, "--merge-isovalues"),
     ):

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from isocore.choices import About, Choice, Format, MaxError
-from isocore.labels import Labels
-from isocore.piece_sizes import MinPiece
 
 from .convert_fields import FIELDS
 from .convert_groups import BATCH, INPUT, ISOVALUE, LABELS, OUTPUT, REPORT
@@ -20,9 +18,11 @@ from .convert_method import METHOD
 from .convert_pictures import PICTURES
 from .convert_pieces import PIECES
 from .options import Reading, default_threads, with_all
-from .values import Range
+from .steps import Range
 
 if TYPE_CHECKING:
+    from isocore.labels import Labels
+    from isocore.piece_sizes import MinPiece
     from isocore.views import Views
     from isocore.volume import Space
 
@@ -105,4 +105,5 @@ def convert_options(command: Callable[[click.Context, ConvertOptions], None]) ->
         command(context, ConvertOptions(**values))
 
     output = (*OUTPUT, *FIELDS, *PICTURES)
-    return with_all(with_record, (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *output, *BATCH, *REPORT))
+    options: tuple[Any, ...] = (*INPUT, *ISOVALUE, *LABELS, *METHOD, *PIECES, *output, *BATCH, *REPORT)
+    return with_all(with_record, options)

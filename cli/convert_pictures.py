@@ -11,6 +11,7 @@ from click.core import ParameterSource
 from isocore.errors import OptionError
 
 from .groups import option_of
+from .param_type import ParamType
 from .values import Worded
 
 _output = option_of("Output")
@@ -40,7 +41,7 @@ class ViewList(Worded):
             self.fail(str(error).removeprefix("--view "), parameter, context)
 
 
-class Size(click.ParamType):
+class Size(ParamType):
     """Width and height, as 1024x768."""
 
     name = "WxH"

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from isocore.piece_sizes import MinPiece, parse_min_piece
-
 from .groups import option_of
+from .param_type import ParamType
+
+if TYPE_CHECKING:
+    from isocore.piece_sizes import MinPiece
 
 _pieces = option_of("Pieces")
 
 
-class MinPieceType(click.ParamType):
+class MinPieceType(ParamType):
     """Triangles (20), or a volume in the world (20mm3)."""
 
     name = "SIZE"
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> MinPiece:
         """The size; whether a surface knows its unit is known when it is there."""
+        from isocore.piece_sizes import parse_min_piece  # late: no help needs it
+
         return parse_min_piece(str(value))
 
 

@@ -105,7 +105,7 @@ def main() -> None:
     except click.ClickException as error:
         from .console import unarmed
 
-        error.message = unarmed(printable(error.message))
+        error.message = unarmed(printable(error.message))  # type: ignore[misc]  # it is shown below, and then gone
         with suppress(OSError):
             error.show()
         code = WRONG_COMMAND

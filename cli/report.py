@@ -56,7 +56,8 @@ def report(
     """
     from isocore.batches.places import refuse_overwriting_files
     from isocore.errors import IsocoreError
-    from isocore.report import load_report, merged, renderer_for, save_report, with_copies
+    from isocore.report import load_report, merged, renderer_for, save_report
+    from isocore.report.copies_found import with_copies
     from isocore.report.limits import check_limits, parse_limit
 
     from .console import say_table

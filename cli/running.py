@@ -10,13 +10,12 @@ from time import perf_counter
 
 import click
 
-from isocore.batches.depfile import depfile_text
 from isocore.batches.run import Batch, run_jobs
 from isocore.errors import IsocoreError, one_line, printable
 from isocore.job import Job, Target
 from isocore.memory import free_bytes
-from isocore.report import BatchReport, RunReport, github_annotations, save_copies, save_report
-from isocore.report.copies_found import has_copies_beside, working_folder
+from isocore.report import BatchReport, RunReport, save_report
+from isocore.report.record import working_folder
 from isocore.whole_file import whole_file
 
 from .console import Progress, say, say_table
@@ -79,8 +78,8 @@ class Records:
         self.unsaved.pop(path, None)
         try:
             save_report(self.batch(), path, mesh_bytes=mesh_bytes)
-            if mesh_bytes and has_copies_beside(path):
-                save_copies(self.batch(), path)
+            if mesh_bytes:
+                _save_copies(self.batch(), path)
         except IsocoreError as error:
             self.unsaved[path] = str(error)
         except Exception as error:  # of a report no fault is worth a batch
@@ -114,6 +113,8 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
     batch = records.batch()
     unwritten = [*records.unsaved.values(), *_write_depfile(jobs, options.depfile)]
     if os.environ.get("GITHUB_ACTIONS") == "true":
+        from isocore.report.render_github import github_annotations
+
         for line in github_annotations(batch):
             click.echo(line, err=True)
     if not options.quiet:
@@ -123,10 +124,20 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
     return batch, not unwritten
 
 
+def _save_copies(batch: BatchReport, path: Path) -> None:
+    """Keep the surfaces of a page beside a report that a page is made from later."""
+    from isocore.report.copies_found import has_copies_beside, save_copies
+
+    if has_copies_beside(path):
+        save_copies(batch, path)
+
+
 def _write_depfile(jobs: list[Job], path: Path | None) -> list[str]:
     """Write the rules; what is in the way, if anything is."""
     if path is None:
         return []
+    from isocore.batches.depfile import depfile_text
+
     text, left_out = depfile_text(jobs)
     try:
         with whole_file(path) as stream:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
-from click.shell_completion import CompletionItem
 
 from isocore import choices, labels
 from isocore.errors import OptionError
 
+from .param_type import ParamType
 
-class Worded(click.ParamType):
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+
+class Worded(ParamType):
     """A type some of whose values are words, which a shell can complete."""
 
     words: tuple[str, ...] = ()
@@ -26,10 +30,12 @@ class Worded(click.ParamType):
         self, context: click.Context, parameter: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
         """The words that begin so."""
+        from click.shell_completion import CompletionItem  # late: only a shell asks for words
+
         return [CompletionItem(word) for word in self.offered() if word.startswith(incomplete.lower())]
 
 
-class Numbers(click.ParamType):
+class Numbers(ParamType):
     """Three numbers, as 64,64,32."""
 
     def __init__(self, kind: type[int] | type[float]) -> None:
@@ -49,7 +55,7 @@ class Numbers(click.ParamType):
         return numbers
 
 
-class Offset(click.ParamType):
+class Offset(ParamType):
     """Bytes before a raw file's samples (352), or the point that vertices are written about (auto or X,Y,Z)."""
 
     name = "auto|X,Y,Z|BYTES"
@@ -64,7 +70,7 @@ class Offset(click.ParamType):
             self.fail(f"{value}: needs auto or X,Y,Z, or a number of bytes for raw files", parameter, context)
 
 
-class Positive(click.ParamType):
+class Positive(ParamType):
     """A finite number above 0."""
 
     name = "EPS"
@@ -80,7 +86,7 @@ class Positive(click.ParamType):
         return number
 
 
-class Ignored(click.ParamType):
+class Ignored(ParamType):
     """A finite number: what is not finite counts as outside anyway."""
 
     name = "VALUE"
@@ -123,7 +129,7 @@ class Isovalue(Worded):
         return choices.spread(str(value))
 
 
-class Colour(click.ParamType):
+class Colour(ParamType):
     """Red, green and blue."""
 
     name = "'#rrggbb'"
@@ -161,7 +167,7 @@ class VolumeChoice(Worded):
         return int(value)
 
 
-class Memory(click.ParamType):
+class Memory(ParamType):
     """Bytes, as 4G, 500M or a plain number."""
 
     name = "SIZE"
@@ -182,8 +188,10 @@ class Jobs(Worded):
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> int | str:
         """A number from 1, or auto."""
-        if value == "auto" or isinstance(value, int):
+        if isinstance(value, int):
             return value
+        if value == "auto":
+            return "auto"
         if not re.fullmatch(r"\d{1,18}", str(value)) or int(value) < 1:
             self.fail(f"{value}: needs a number from 1, or auto", parameter, context)
         return int(value)
@@ -201,47 +209,8 @@ class Words(Worded):
         self, context: click.Context, parameter: click.Parameter, incomplete: str
     ) -> list[CompletionItem]:
         """Each word after those that are there already."""
+        from click.shell_completion import CompletionItem
+
         before, comma, last = incomplete.rpartition(",")
         items = super().shell_complete(context, parameter, last)
         return [CompletionItem(before + comma + item.value) for item in items]
-
-
-#: First, last and stride; None for an end that is not given.
-Range = tuple[int | None, int | None, int]
-
-
-class StepNumbers(click.ParamType):
-    """Which steps of a series, by number: parts as A:B:C, A:B or K, with commas between."""
-
-    name = "A:B:C"
-
-    def convert(
-        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
-    ) -> tuple[Range, ...]:
-        """The parts."""
-        return tuple(self._range(part.strip(), parameter, context) for part in str(value).split(","))
-
-    def _range(self, part: str, parameter: click.Parameter | None, context: click.Context | None) -> Range:
-        match = re.fullmatch(r"(-?\d{1,9})?(?P<more>:(-?\d{1,9})?(:(?P<stride>\d{1,9})?)?)?", part, re.ASCII)
-        if not part or not match or (match["stride"] and not int(match["stride"])):
-            self.fail(f"{part}: needs steps as 3, 0:10, 0:10:2 or -1", parameter, context)
-        first, last = (None if number is None else int(number) for number in (match[1], match[3]))
-        return (first, last if match["more"] else first, int(match["stride"] or 1))
-
-
-class Times(click.ParamType):
-    """Times of single steps, with commas between."""
-
-    name = "LIST"
-
-    def convert(
-        self, value: Any, parameter: click.Parameter | None, context: click.Context | None
-    ) -> tuple[float, ...]:
-        """The numbers."""
-        try:
-            times = tuple(float(part) for part in str(value).split(","))
-        except ValueError:
-            times = (math.nan,)
-        if not all(map(math.isfinite, times)):
-            self.fail(f"{value}: needs times, as 0.5 or 0,0.5,1", parameter, context)
-        return times

@@ -16,7 +16,7 @@ OF_MANY = (
     ("the surface is open where it meets the volume's border", "are open at the border; --cap closes them"),
     ("no surface at isovalue", "are empty; `isocore info FILE` shows which isovalues make sense"),
 )
-_NUMBER = re.compile(r"[-+]?\d[\d,]*(\.\d+)?(e[-+]?\d+)?", re.IGNORECASE)
+_NUMBER = r"[-+]?\d[\d,]*(\.\d+)?(e[-+]?\d+)?"
 
 
 @dataclass(slots=True)
@@ -86,7 +86,7 @@ def _kind(warning: str, run: RunReport) -> str:
     """The warning without its numbers and paths."""
     for path in filter(None, (run.source, run.output)):
         warning = warning.replace(path, "")
-    return _NUMBER.sub("0", warning)
+    return re.sub(_NUMBER, "0", warning, flags=re.IGNORECASE)
 
 
 def said_at_once(run: RunReport) -> list[str]:

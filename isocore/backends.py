@@ -17,10 +17,7 @@ from isocore.errors import OptionError
 from isocore.extraction import Extract, Extraction, Field, Outlook
 from isocore.job import Job, Options
 from isocore.labels import Label
-from isocore.methods.climbing import prepare_climbing
-from isocore.methods.label_map import prepare_labels
-from isocore.methods.marching_cubes import prepare_marching_cubes
-from isocore.methods.thinning import prepare_thinning
+from isocore.late import late
 from isocore.volume import Volume
 
 __all__ = [
@@ -63,7 +60,7 @@ BACKENDS: dict[str, Backend] = {
             name="asc",
             title="adaptive skeleton climbing",
             accepts=(Volume,),
-            prepare=prepare_climbing,
+            prepare=late("methods.climbing", "prepare_climbing"),
             options=frozenset({"block_size", "max_error", "simplify", "triangles"}),
             cites="Poston, Wong, Heng 1998",
         ),
@@ -71,7 +68,7 @@ BACKENDS: dict[str, Backend] = {
             name="thinning",
             title="volume thinning",
             accepts=(CellMesh, Volume),
-            prepare=prepare_thinning,
+            prepare=late("methods.thinning", "prepare_thinning"),
             options=frozenset({"simplify", "triangles"}),
             cites="Itoh, Yamaguchi, Koyamada 1996, 2001",
         ),
@@ -79,7 +76,7 @@ BACKENDS: dict[str, Backend] = {
             name="mc",
             title="marching cubes; marching tetrahedra for meshes",
             accepts=(Volume, CellMesh),
-            prepare=prepare_marching_cubes,
+            prepare=late("methods.marching_cubes", "prepare_marching_cubes"),
             options=frozenset({"topology", "smooth", "simplify", "triangles"}),
             cites="Lorensen, Cline 1987; Nielson, Hamann 1991",
         ),
@@ -91,7 +88,7 @@ LABELS = Backend(
     name="labels",
     title="multiple material marching cubes",
     accepts=(Volume,),
-    prepare=prepare_labels,
+    prepare=late("methods.label_map", "prepare_labels"),
     options=frozenset({"smooth", "background", "max_error", "simplify", "triangles"}),
     cites="Hege, Seebass, Stalling, Zoeckler 1997; Wu, Sullivan 2003",
 )

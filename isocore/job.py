@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from isocore.choices import (
     FIELD_FORMATS,
@@ -18,10 +19,12 @@ from isocore.choices import (
 )
 from isocore.errors import OptionError
 from isocore.labels import Label
-from isocore.piece_sizes import MinPiece, parse_min_piece
 from isocore.readers.options import ReadOptions
 from isocore.views import Still
 from isocore.volume import Space, Volume, to_ras
+
+if TYPE_CHECKING:
+    from isocore.piece_sizes import MinPiece
 
 #: The target that is not a file.
 STDOUT = Path("-")
@@ -66,6 +69,8 @@ class Options:
         if isinstance(self.max_error, str):
             object.__setattr__(self, "max_error", parse_max_error(self.max_error))
         if isinstance(self.min_piece, str):
+            from isocore.piece_sizes import parse_min_piece  # late: few jobs drop pieces
+
             object.__setattr__(self, "min_piece", parse_min_piece(self.min_piece))
 
 

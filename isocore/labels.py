@@ -10,7 +10,7 @@ from isocore.errors import OptionError
 #: Labels that one map may hold.
 MOST_LABELS = 100_000
 
-_LABELS = re.compile(r"(?P<first>-?\d{1,18})(?:\s*-\s*(?P<last>-?\d{1,18}))?")
+_LABELS = r"(?P<first>-?\d{1,18})(?:\s*-\s*(?P<last>-?\d{1,18}))?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def parse_labels(text: str) -> Labels:
         return Labels(None, "all")
     values: dict[int, None] = {}
     for part in text.split(","):
-        match = _LABELS.fullmatch(part.strip())
+        match = re.fullmatch(_LABELS, part.strip())
         if match is None:
             raise OptionError(f"--labels {text}: is no list of labels; write all, or numbers and ranges as 1,5-9")
         first, last = int(match["first"]), int(match["last"] or match["first"])

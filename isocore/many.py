@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Literal, SupportsFloat, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat, TypeAlias
 
 from isocore.api import Isovalue, Topology, arguments_named, at_least_one, choices_of, options_of
 from isocore.backends import check_options
-from isocore.batches.label_targets import LabelRequest
 from isocore.batches.naming import check_picture_template
 from isocore.batches.plan import Naming, check_template, find_inputs, plan
 from isocore.batches.run import Batch, run_jobs
@@ -25,9 +24,12 @@ from isocore.memory import free_bytes, processors
 from isocore.pictures import check_installed
 from isocore.readers.options import ReadOptions
 from isocore.report import MESH_BYTES, BatchReport, RunReport, renderer_for, save_report
-from isocore.report.copies_found import working_folder
+from isocore.report.record import working_folder
 from isocore.views import Still, parse_views
 from isocore.volume import Space
+
+if TYPE_CHECKING:
+    from isocore.batches.label_targets import LabelRequest
 
 Name: TypeAlias = os.PathLike[str] | str
 
@@ -125,7 +127,11 @@ def convert_files(
         if picture is not None:
             check_picture_template(picture)
             check_installed()
-        wanted = None if labels is None else LabelRequest(labels=parse_labels(labels), background=background)
+        wanted = None
+        if labels is not None:
+            from isocore.batches.label_targets import LabelRequest  # late: few batches are about labels
+
+            wanted = LabelRequest(labels=parse_labels(labels), background=background)
         paths = [Path(one) for one in _several(inputs)]
         planned = _planned(paths, isovalues, pattern, naming, volume, wanted, merge_isovalues, saved)
         for path in saved:

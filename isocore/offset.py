@@ -8,6 +8,7 @@ surface is moved.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -18,9 +19,12 @@ from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.choices import About
 from isocore.extraction import Field
-from isocore.methods.marching_cells import single_precision
+from isocore.late import late
 from isocore.surface import Point, Surface, coordinate_type
 from isocore.volume import Volume
+
+#: Whether float32 will do for a mesh: its methods are not imported where a volume is read.
+_single_precision: Callable[..., bool] = late("methods.marching_cells", "single_precision")
 
 
 def offset_of(field: Field, asked: About | None) -> Point | None:
@@ -31,7 +35,7 @@ def offset_of(field: Field, asked: About | None) -> Point | None:
         return asked.point
     if isinstance(field, CellMesh):
         low, high = np.array(_kernels.bounds(field.points)).reshape(2, 3)
-        is_fine = single_precision(field)
+        is_fine = _single_precision(field)
     else:
         corners = np.array([np.zeros(3), np.array(field.shape) - 1.0])
         low, high = _world_box(field, corners)
@@ -54,7 +58,7 @@ def moved_surface(surface: Surface, field: Field, offset: Point | None) -> Surfa
         return surface
     if isinstance(field, CellMesh):
         vertices = surface.vertices - np.array(offset)
-        single = single_precision(field, offset)
+        single = _single_precision(field, offset)
         surface = replace(surface, vertices=vertices.astype(np.float32) if single else vertices)
     return replace(surface, offset=offset)
 

@@ -7,27 +7,23 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, BinaryIO, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import numpy as np
 
-from isocore.ambiguities import find_ambiguities
-from isocore.copies import Copy, copied
 from isocore.errors import OptionError, writing
 from isocore.extraction import Field
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
-from isocore.pictures import check_installed, draw, write_png
 from isocore.report.sections import Carried, Colors, Written
 from isocore.surface import Part, Point, Surface, joined
-from isocore.views import directions
 from isocore.volume import Volume
 from isocore.whole_file import whole_file
 from isocore.writers import WRITERS
 from isocore.writers.colormaps import coloured, magnitudes, range_of
-from isocore.writers.obj import write_materials, write_obj
-from isocore.writers.ply import write_ply_points
-from isocore.writers.vtp import write_vtp
+
+if TYPE_CHECKING:
+    from isocore.copies import Copy
 
 _NO_NORMALS = "STL holds no vertex normals, only one for every triangle, so --normals adds none; write PLY, VTP or OBJ"
 
@@ -75,7 +71,11 @@ def colors_of(surface: Surface, job: Job) -> Colors | None:
 
 def page_copy(surface: Surface, target: Target, job: Job) -> Copy | None:
     """A copy of the surface for the report's page, with what it is coloured by; None where none is asked for."""
-    colors = colors_of(surface, job) if job.page_triangles else None
+    if not job.page_triangles:
+        return None
+    from isocore.copies import copied  # late, as all that few jobs ask for
+
+    colors = colors_of(surface, job)
     values = None if colors is None else magnitudes(surface.fields[colors.by])
     return copied(surface, job.page_triangles, colour_of(target, job), values)
 
@@ -147,14 +147,20 @@ def write_target(surface: Surface, target: Target, job: Job) -> Written:
     to_stdout = target.output == STDOUT
     materials = materials_of(target.output, job) if surface.parts else None
     if materials:
+        from isocore.writers.obj import write_materials
+
         with whole_file(materials) as beside:
             write_materials(beside, surface)
     place: AbstractContextManager[BinaryIO | None] = writing("stdout") if to_stdout else whole_file(target.output)
     with place as opened:
         stream = _Hashed(opened or sys.stdout.buffer)
         if materials:
+            from isocore.writers.obj import write_obj
+
             write_obj(cast(BinaryIO, stream), surface, job.options.threads, materials.name)
         elif job.format == "vtp":
+            from isocore.writers.vtp import write_vtp
+
             write_vtp(cast(BinaryIO, stream), surface, job.options.threads, compress=job.compress, time=job.time)
         else:
             WRITERS[f".{job.format}"](cast(BinaryIO, stream), surface, job.options.threads)
@@ -166,12 +172,18 @@ def write_target(surface: Surface, target: Target, job: Job) -> Written:
 def check_pictures(job: Job, space: str) -> None:
     """Raises OptionError or FieldError where a picture is asked for and cannot be drawn; before anything is written."""
     if any(target.picture is not None for target in job.targets):
+        from isocore.pictures import check_installed
+        from isocore.views import directions
+
         check_installed()
         directions(job.still.views, space)
 
 
 def draw_picture(surface: Surface, picture: Path, job: Job) -> None:
     """Draw a still of the surface, in the colours of what it carries."""
+    from isocore.pictures import draw, write_png
+    from isocore.views import directions
+
     colors = colors_of(surface, job)
     if colors is not None and len(surface.vertices):
         numbers = magnitudes(surface.fields[colors.by])
@@ -193,6 +205,9 @@ def write_ambiguities(source: Field, isovalue: float, job: Job, offset: Point | 
         return
     if not isinstance(source, Volume):
         raise OptionError(f"--ambiguities {job.ambiguities}: is for volumes only; leave it out")
+    from isocore.ambiguities import find_ambiguities
+    from isocore.writers.ply import write_ply_points
+
     found = find_ambiguities(source, isovalue, threads=job.options.threads)
     with whole_file(job.ambiguities) as stream:
         write_ply_points(

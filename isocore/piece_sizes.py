@@ -7,30 +7,25 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from isocore.choices import MILLIMETRES
 from isocore.errors import OptionError
 
-_VOLUME = re.compile(
-    r"(?P<number>[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?)\s*((?P<unit>[a-zµ]+)\s*(?P<power>\^?3|³)?)?", re.IGNORECASE
-)
+_VOLUME = r"(?P<number>[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?)\s*((?P<unit>[a-zµ]+)\s*(?P<power>\^?3|³)?)?"
 
 
-@dataclass(frozen=True, slots=True)
-class FewestTriangles:
+class FewestTriangles(NamedTuple):
     """A piece that is kept has at least so many triangles."""
 
-    count: int
+    triangles: int
     text: str
 
     def __str__(self) -> str:
         return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class SmallestVolume:
+class SmallestVolume(NamedTuple):
     """A piece that is kept encloses at least so much; unit: one of MILLIMETRES, whose cube is meant."""
 
     volume: float
@@ -47,7 +42,7 @@ MinPiece: TypeAlias = FewestTriangles | SmallestVolume
 def parse_min_piece(text: str) -> MinPiece:
     """How large a piece must be. Raises OptionError for nonsense; whether a surface has the unit is checked later."""
     text = text.strip()
-    match = _VOLUME.fullmatch(text)
+    match = re.fullmatch(_VOLUME, text, re.IGNORECASE)
     if match is None:
         raise OptionError(f"--min-piece {text}: is no size; write a number of triangles (20), or a volume (20mm3)")
     number, unit = float(match["number"]), (match["unit"] or "").lower()

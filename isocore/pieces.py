@@ -128,7 +128,7 @@ class _Found:
         if asked is None:
             return self.is_outer
         if isinstance(asked, FewestTriangles):
-            return self.is_outer & (self.triangles >= asked.count)
+            return self.is_outer & (self.triangles >= asked.triangles)
         smallest = asked.volume * (MILLIMETRES[asked.unit] / MILLIMETRES[unit]) ** 3
         return self.is_outer & (~self.is_closed | (self.volume + self.step * self.area >= smallest))
 

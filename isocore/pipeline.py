@@ -9,6 +9,7 @@ from isocore.asked import asked_of
 from isocore.backends import BACKENDS, REFERENCE, Extract, Field, Outlook, backend_for, prepare
 from isocore.cell_mesh import CellMesh
 from isocore.errors import FieldError, InputError, IsocoreError, about
+from isocore.extraction import Findings
 from isocore.field_facts import FieldFacts
 from isocore.histogram import histogram
 from isocore.isovalue import choose
@@ -16,8 +17,6 @@ from isocore.job import Job, Options, Target
 from isocore.labels import Label
 from isocore.measurements import measure
 from isocore.memory import forget_peak, peak_bytes
-from isocore.methods.index_file import index_path
-from isocore.methods.label_map import named
 from isocore.offset import moved_field, moved_surface, offset_of
 from isocore.outputs import (
     Sink,
@@ -77,7 +76,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
         known = FieldFacts.of(source, spread)
         check_pictures(job, known.space)
         labels = label_count(source, spread)
-        outlook = replace(_outlook(job), cells=source.cells if isinstance(source, CellMesh) else 0)
+        outlook = _outlook(job, source)
         backend, why = backend_for(job, type(source), outlook)
         with timer("prepare"):
             extract = prepare(source, backend, replace(job.options, normals=job.normals, angles=True), outlook)
@@ -129,7 +128,7 @@ def _converted(job: Job, sink: Sink) -> Iterator[RunReport]:
                     surface=measured,
                     carried=carried_facts(surface, source),
                     colors=colors,
-                    findings=named(findings, target.choice),
+                    findings=_named(findings, target),
                     seconds=timer.taken(),
                     peak_rss_bytes=peak_bytes(),
                     copy=page_copy(surface, target, job),
@@ -174,14 +173,28 @@ def _read(job: Job, timer: Timer) -> Field:
     return source
 
 
-def _outlook(job: Job) -> Outlook:
+def _named(findings: Findings, target: Target) -> Findings:
+    """What is said of a label, with the name and the colour that the label was chosen with."""
+    choice = target.choice
+    if findings.label is None or not isinstance(choice, Label):
+        return findings
+    color = None if choice.colour is None else "#" + bytes(choice.colour).hex()
+    return replace(findings, label=replace(findings.label, name=choice.name, color=color))
+
+
+def _outlook(job: Job, source: Field) -> Outlook:
+    asked = Outlook(isovalues=len(job.targets), named=job.backend is not None)
+    if not isinstance(source, CellMesh):
+        return asked
+    from isocore.methods.index_file import index_path  # late: only a mesh has an index
+
     step = files_of(job.source, job.read_options.step)[1:] if job.read_options.step is not None else ()
     index = index_path(step[0] if len(step) == 1 else job.source)
     try:
         found = index if index.is_file() else None
     except OSError:  # the source's name leaves no room for a longer one
         found = None
-    return Outlook(isovalues=len(job.targets), index=found, named=job.backend is not None)
+    return replace(asked, index=found, cells=source.cells)
 
 
 class _ReferenceRuns:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from isocore.errors import FieldError, OptionError
 
@@ -22,14 +21,13 @@ _AXES: dict[str, Direction] = {
 #: What the axes' positive ends are called; the third is S in each.
 _ENDS = {"ras": ("R", "A"), "lps": ("L", "P"), "las": ("L", "A")}
 _OPPOSITE = {"R": "L", "L": "R", "A": "P", "P": "A", "S": "I", "I": "S"}
-_ANGLES = re.compile(r"(?P<turn>[+-]?\d+(\.\d+)?):(?P<tilt>[+-]?\d+(\.\d+)?)")
+_ANGLES = r"(?P<turn>[+-]?\d+(\.\d+)?):(?P<tilt>[+-]?\d+(\.\d+)?)"
 #: Words that a shell may complete.
 VIEW_WORDS = (CORNER, *_OPPOSITE, *_AXES)
 MOST_VIEWS = 12
 
 
-@dataclass(frozen=True, slots=True)
-class Views:
+class Views(NamedTuple):
     """One or several views, side by side in a picture. names: each as it is written; text: all of them."""
 
     names: tuple[str, ...] = (CORNER,)
@@ -38,8 +36,7 @@ class Views:
         return ",".join(self.names)
 
 
-@dataclass(frozen=True, slots=True)
-class Still:
+class Still(NamedTuple):
     """How a surface is drawn. size: width and height in pixels. kind: of the file."""
 
     views: Views = Views()
@@ -56,7 +53,7 @@ def parse_views(text: str) -> Views:
     for part in text.split(","):
         word = part.strip()
         known = next((name for name in VIEW_WORDS if name.lower() == word.lower()), None)
-        angles = _ANGLES.fullmatch(word)
+        angles = re.fullmatch(_ANGLES, word)
         if known is None and (angles is None or abs(float(angles["tilt"])) > 90):
             words = " ".join(VIEW_WORDS)
             raise OptionError(f"--view {text}: {word or 'nothing'} is no view; use {words}, or TURN:TILT, as 30:15")
@@ -84,7 +81,7 @@ def _direction(name: str, space: str) -> tuple[Direction, Direction]:
             raise FieldError(f"--view {name}: the file does not say where its axes point; use +x -x +y -y +z -z")
         to_eye = _anatomical(name, ends)
     else:
-        angles = _ANGLES.fullmatch(name)
+        angles = re.fullmatch(_ANGLES, name)
         turn, tilt = (float(angles["turn"]), float(angles["tilt"])) if angles else _CORNER_ANGLES
         return _turned(math.radians(turn), math.radians(tilt), ahead)
     up = (0.0, ahead, 0.0) if to_eye[2] else (0.0, 0.0, 1.0)

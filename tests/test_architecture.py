@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,7 +17,7 @@ import isocore
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = sorted(path for folder in ("isocore", "cli") for path in (ROOT / folder).rglob("*.py"))
 
-NOUNS = {"errors", "version", "digits", "choices", "colormaps", "labels", "piece_sizes", "views"} | {
+NOUNS = {"errors", "late", "version", "digits", "choices", "colormaps", "labels", "piece_sizes", "views"} | {
     "volume", "cell_mesh", "carried", "surface", "job", "extraction", "measurements"
 }  # fmt: skip
 KERNELS = {"_kernels", "_processor"}
@@ -35,6 +36,7 @@ BATCHED = NOUNS | {"report", "whole_file"}
 MAY_IMPORT: dict[str, set[str]] = {
     "_kernels": set(),
     "errors": set(),
+    "late": set(),
     "version": set(),
     "digits": set(),
     "colormaps": {"errors"},
@@ -56,7 +58,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "extraction": {"cell_mesh", "surface", "volume"},
     "ambiguities": {"volume"} | KERNELS,
     "copies": {"surface"} | KERNELS,
-    "readers": {"arrays", "digits", "errors", "volume", "cell_mesh", "carried"} | KERNELS,
+    "readers": {"late", "arrays", "digits", "errors", "volume", "cell_mesh", "carried"} | KERNELS,
     "readers/options": set(),
     "apart": KERNELS,
     "histogram": {"apart", "cell_mesh", "volume"} | KERNELS,
@@ -64,9 +66,9 @@ MAY_IMPORT: dict[str, set[str]] = {
     "segmentation": {"labels", "digits", "extraction", "histogram", "isovalue", "volume"},
     "extrema": {"cell_mesh"},
     "field_facts": {"cell_mesh", "extraction", "histogram", "volume"},
-    "writers": {"choices", "colormaps", "errors", "surface", "volume", "whole_file"} | KERNELS,
+    "writers": {"late", "choices", "colormaps", "errors", "surface", "volume", "whole_file"} | KERNELS,
     "report": {"cell_mesh", "errors", "version", "extraction", "measurements", "histogram", "field_facts", "whole_file"}
-    | {"copies", "digits", "surface", "writers/colormaps", "writers/read_back"}
+    | {"copies", "late", "digits", "surface", "writers/colormaps", "writers/read_back"}
     | KERNELS,
     "report/sections": set(),
     "timer": {"report/sections"},
@@ -79,7 +81,7 @@ MAY_IMPORT: dict[str, set[str]] = {
     "outputs": NOUNS | {"ambiguities", "copies", "pictures", "report/sections", "whole_file", "writers"},
     "pieces": NOUNS | KERNELS,
     "rounded_error": NOUNS | {"methods/normals"} | KERNELS,
-    "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file", "methods/label_map"},
+    "pipeline": NOUNS | FIELD_ROOMS | STAGES | PLACES | {"methods/index_file"},
     "api": NOUNS | FIELD_ROOMS | {"backends", "pieces"},
     "many": NOUNS | {"api", "backends", "batches", "copies", "memory", "pictures", "readers/options", "report"},
     "exchange": {"errors"},
@@ -149,7 +151,14 @@ def imports(path: Path, root: Path = ROOT) -> Iterator[tuple[int, str]]:
             yield from ((node.lineno, f"{base}.{alias.name}") for alias in node.names)
 
 
-IMPORTS = [(path, line, module) for path in SOURCES for line, module in imports(path)]
+def rows(path: Path) -> Iterator[tuple[int, str]]:
+    """Line and absolute name of every function that a table of this file names by `late("module", "function")`."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "late":
+            yield node.lineno, ".".join(["isocore", *(str(ast.literal_eval(part)) for part in node.args)])
+
+
+IMPORTS = [(path, line, module) for path in SOURCES for line, module in (*imports(path), *rows(path))]
 
 
 def file_graph(sources: list[Path], root: Path = ROOT) -> dict[str, dict[str, int]]:
@@ -189,6 +198,15 @@ def circle_in(graph: dict[str, dict[str, int]]) -> list[str]:
         return found
 
     return next(filter(None, (search(module, []) for module in graph)), [])
+
+
+def test_rows_of_tables_name_functions_that_are_there() -> None:
+    """What is imported by name, when it is first called, is found before that."""
+    named = [name for path in SOURCES for _, name in rows(path)]
+    assert len(named) > 30
+    for name in named:
+        module, function = name.rsplit(".", 1)
+        assert callable(getattr(import_module(module), function)), name
 
 
 def test_no_file_imports_itself_by_way_of_others() -> None:

@@ -18,7 +18,8 @@ from isocore.cell_mesh import CellMesh
 from isocore.errors import LONGEST, InputError, OptionError, about, one_line, printable, reading, shortened
 from isocore.job import Job, Target
 from isocore.pipeline import failed
-from isocore.report import BatchReport, github_annotations
+from isocore.report import BatchReport
+from isocore.report.render_github import github_annotations
 from isocore.volume import Volume
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()"]

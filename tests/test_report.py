@@ -14,17 +14,9 @@ from typing import Any
 import pytest
 
 from isocore.errors import InputError
-from isocore.report import (
-    BatchReport,
-    RunReport,
-    github_annotations,
-    load_report,
-    merged,
-    renderer_for,
-    run_as_dict,
-    run_from_dict,
-    save_report,
-)
+from isocore.report import BatchReport, RunReport, load_report, merged, renderer_for, save_report
+from isocore.report.keys import run_as_dict, run_from_dict
+from isocore.report.render_github import github_annotations
 from isocore.report.render_junit import render_junit
 
 NASTY = 'a "quoted", <b>&amp;</b> | name\x07\n;=cmd'

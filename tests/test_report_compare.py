@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 from isocore.errors import OptionError
-from isocore.report import BatchReport, RunReport, run_from_dict, save_report
+from isocore.report import BatchReport, RunReport, save_report
 from isocore.report.compare import HEADINGS, compared, comparison_rows, faults
+from isocore.report.keys import run_from_dict
 from isocore.report.limits import check_limits, parse_limit, value_of
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()", "report"]

@@ -20,7 +20,8 @@ from small_files import ball, write_nifti
 from isocore.copies import copy_from_dict
 from isocore.job import Job, Target
 from isocore.pipeline import convert
-from isocore.report import BatchReport, RunReport, save_report, with_copies
+from isocore.report import BatchReport, RunReport, save_report
+from isocore.report.copies_found import with_copies
 
 BROWSER = next(
     (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None

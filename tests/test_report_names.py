@@ -15,7 +15,8 @@ import pytest
 from small_files import ball, write_nifti
 
 from isocore.errors import printable
-from isocore.report import BatchReport, load_report, renderer_for, run_from_dict, save_report
+from isocore.report import BatchReport, load_report, renderer_for, save_report
+from isocore.report.keys import run_from_dict
 
 PROGRAM = [sys.executable, "-P", "-c", "from isocore.cli.main import main; main()"]
 ENDINGS = ("json", "jsonl", "csv", "md", "html", "xml")

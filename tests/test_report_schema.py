@@ -19,8 +19,9 @@ from small_files import ball, write_nifti
 from isocore.batches.stamps import reason_to_run, stamp_path
 from isocore.errors import InputError
 from isocore.job import Job, Target
-from isocore.report import RENDERERS, BatchReport, load_report, merged, run_as_dict, run_from_dict, save_report
+from isocore.report import RENDERERS, BatchReport, load_report, merged, save_report
 from isocore.report.compare import compared, comparison_rows, faults
+from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.limits import parse_limit
 from isocore.report.schema import parsed
 from isocore.report.summary import summary_row

@@ -13,7 +13,7 @@ from isocore.cli.convert import convert
 from isocore.cli.report import report
 from small_files import ball, write_nifti
 
-from isocore.report import run_as_dict, run_from_dict
+from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.limits import value_of
 from isocore.report.sections import Seconds
 from isocore.report.summary import HEADINGS

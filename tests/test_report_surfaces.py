@@ -19,7 +19,8 @@ from small_files import ball, write_nifti
 from isocore.copies import copied
 from isocore.job import Job, Target
 from isocore.pipeline import convert
-from isocore.report import BatchReport, RunReport, run_from_dict, save_report
+from isocore.report import BatchReport, RunReport, save_report
+from isocore.report.keys import run_from_dict
 from isocore.surface import Surface
 from isocore.writers import FORMATS, write
 from isocore.writers.read_back import read_mesh

@@ -12,7 +12,6 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
-from xml.sax.saxutils import quoteattr
 
 from isocore.batches.places import Places
 from isocore.errors import OutputError
@@ -146,6 +145,8 @@ def _entries(jobs: Iterable[Job]) -> Iterator[tuple[float, int, Target]]:
 
 
 def _line(path: Path, entry: tuple[float, int, Target]) -> str:
+    from xml.sax.saxutils import quoteattr  # late, since it brings all that fetches from the network
+
     time, part, target = entry
     file = Path(os.path.relpath(target.output.absolute(), path.parent.absolute())).as_posix()
     return f'<DataSet timestep="{time!r}" group="" part="{part}" file={quoteattr(file)}/>\n'

@@ -19,7 +19,7 @@ _OF_LABELS = ("label", "label_name")
 NAME_FIELDS = ("stem", "name", "isovalue", "relpath", "parent", "backend", "volume", "step", "time", *_OF_LABELS)
 #: What is a number, which may be written in so many digits.
 _NUMBERED = ("volume", "step")
-_DIGITS = re.compile(r"0?\d{1,2}d?|")
+_DIGITS = r"0?\d{1,2}d?|"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +52,7 @@ def check_template(template: str, option: str = "--name") -> None:
         if name not in NAME_FIELDS:
             known = " ".join(f"{{{field}}}" for field in NAME_FIELDS)
             raise OptionError(f"{option} {template}: {{{name}}} is no field; known are {known}")
-        if conversion is not None or (spec and not (name in _NUMBERED and _DIGITS.fullmatch(spec))):
+        if conversion is not None or (spec and not (name in _NUMBERED and re.fullmatch(_DIGITS, spec))):
             given = f"{{{name}{f'!{conversion}' if conversion is not None else ''}{f':{spec}' if spec else ''}}}"
             advice = f"write {{{name}}}" + (f", or {{{name}:03}} for three digits" if name in _NUMBERED else "")
             raise OptionError(f"{option} {template}: {given} asks for a format that names do not take; {advice}")

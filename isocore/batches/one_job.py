@@ -11,7 +11,6 @@ from isocore.job import STDOUT, Job, Target
 from isocore.memory import estimated_bytes
 from isocore.pipeline import convert, failed, requirements_checked
 from isocore.readers import carried_files, content_bytes
-from isocore.report.copies_found import file_copies
 from isocore.report.record import RunReport
 
 
@@ -65,6 +64,8 @@ def _changed(job: Job) -> Iterator[RunReport]:
 
 def _with_copies(skipped: dict[Target, RunReport], job: Job) -> dict[Target, RunReport]:
     """What is up to date, with copies of the surfaces for a page; targets of one file have a part of it each."""
+    from isocore.report.copies_found import file_copies  # late: few commands make a page
+
     files: dict[str, list[Target]] = {}
     for target, run in skipped.items():
         files.setdefault(run.output, []).append(target)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from isocore.batches.inputs import Input, find_inputs
-from isocore.batches.label_targets import LabelRequest, label_choices
 from isocore.batches.naming import (
     Naming,
     check_template,
@@ -22,11 +22,14 @@ from isocore.batches.naming import (
     picture_of,
 )
 from isocore.batches.places import Places
-from isocore.batches.steps import StepChoice
 from isocore.choices import Auto, Choice
 from isocore.errors import OptionError, told
 from isocore.job import STDOUT, Job, ReadAhead, Target
 from isocore.readers import ReadOptions, carried_files, count_volumes, files_of, times_of
+
+if TYPE_CHECKING:
+    from isocore.batches.label_targets import LabelRequest
+    from isocore.batches.steps import StepChoice
 
 #: An option that names a file, and the file.
 Named = tuple[str, Path]
@@ -43,7 +46,7 @@ def plan(
     naming: Naming,
     *,
     volumes: int | str | None = None,
-    steps: StepChoice = StepChoice(),  # noqa: B008
+    steps: StepChoice | None = None,
     labels: LabelRequest | None = None,
     merge: bool = False,
     written: Sequence[Named] = (),
@@ -90,7 +93,7 @@ def plan(
     return jobs
 
 
-def _per_step(item: Input, pattern: Job, volumes: int | str | None, steps: StepChoice) -> list[Job]:
+def _per_step(item: Input, pattern: Job, volumes: int | str | None, steps: StepChoice | None) -> list[Job]:
     """One job per step of a series that is meant, and per volume; a series that cannot be read stays one job."""
     try:
         times = () if item.refusal else times_of(item.path)
@@ -99,7 +102,7 @@ def _per_step(item: Input, pattern: Job, volumes: int | str | None, steps: StepC
     if not times:
         return _per_volume(item, pattern, volumes)
     each = []
-    for step in steps.of(item.path, times):
+    for step in range(len(times)) if steps is None else steps.of(item.path, times):
         one = replace(pattern, time=times[step], read_options=replace(pattern.read_options, step=step))
         each += _per_volume(item, one, volumes)
     return each
@@ -132,6 +135,8 @@ class _Asked:
             return self._choices
         key = path, options.volume, options.step
         if key not in self._known:
+            from isocore.batches.label_targets import label_choices  # late: few commands are about labels
+
             self._known[key], ahead = label_choices(path, self._labels, options)
             self.read_ahead = ahead if self._keep else None
         return self._known[key]

@@ -7,11 +7,9 @@ from contextlib import closing
 from dataclasses import dataclass
 
 from isocore.batches import stamps
-from isocore.batches.cluster import run_on_cluster
 from isocore.batches.collection import Collections
 from isocore.batches.leftovers import remove_parts
 from isocore.batches.one_job import estimate, guarded
-from isocore.batches.workers import Limits, run_in_workers
 from isocore.job import STDOUT, Job
 from isocore.report.record import RunReport
 
@@ -55,8 +53,12 @@ def _runs(
     jobs: Sequence[Job], batch: Batch, at: Callable[[list[Job]], None]
 ) -> Generator[tuple[Job, RunReport], None, None]:
     if batch.scheduler is not None:
+        from isocore.batches.cluster import run_on_cluster  # late, as workers: one job needs neither
+
         yield from run_on_cluster(jobs, batch.scheduler)
     elif batch.workers:
+        from isocore.batches.workers import Limits, run_in_workers
+
         limits = Limits(batch.workers, batch.seconds_per_job, batch.memory_bytes)
         yield from run_in_workers(jobs, limits, estimate=estimate, here=guarded, at=at)
     else:

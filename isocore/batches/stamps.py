@@ -17,9 +17,7 @@ from isocore.errors import IsocoreError
 from isocore.job import STDOUT, Job, Target
 from isocore.labels import Label
 from isocore.readers import carried_files, files_of
-from isocore.report.keys import run_as_dict, run_from_dict
 from isocore.report.record import RunReport
-from isocore.report.schema import built, parsed
 from isocore.version import __version__
 from isocore.whole_file import whole_file
 
@@ -130,6 +128,8 @@ def reason_to_run(job: Job, target: Target, source_hash: str) -> tuple[str, RunR
             stamp.still == str(job.still) and _is_as_made(target.picture, stamp.picture)
         ):
             return "no picture yet, or changed", None
+        from isocore.report.keys import run_from_dict
+
         run = run_from_dict(stamp.run, complete=True)
         if job.counts_intersections and run.surface is not None and run.surface.self_intersections is None:
             return "self-intersections not counted yet", None
@@ -149,6 +149,8 @@ def _read_stamp(path: Path) -> _Stamp:
     """The stamp in a file. Raises InputError for what is none, OSError where there is none."""
     if not path.is_file():
         raise FileNotFoundError(path)
+    from isocore.report.schema import built, parsed  # late: most runs leave no stamp
+
     return built(_Stamp, parsed(path.read_bytes()), "", needed=("version",))
 
 
@@ -159,6 +161,8 @@ def _hash_of(run: dict[str, Any]) -> str:
 
 def keep_stamp(job: Job, target: Target, source_hash: str, run: RunReport) -> None:
     """Write down what the output was made from."""
+    from isocore.report.keys import run_as_dict
+
     record = run_as_dict(run)
     beside, drawn = job.ambiguities, target.picture
     stamp = _Stamp(

@@ -12,11 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels
-from isocore.choices import Choice
 from isocore.errors import FieldError
 from isocore.extraction import Extract, Extraction, Field, Findings, LabelFacts, Outlook
 from isocore.job import Options
-from isocore.labels import MOST_LABELS, Label
+from isocore.labels import MOST_LABELS
 from isocore.methods.carrying import volume_fields
 from isocore.methods.label_simplifying import simplify_labels
 from isocore.methods.simplifying import volume_simplifier
@@ -75,14 +74,6 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
         return Extraction(surface, findings, warnings, seconds_normals=seconds)
 
     return extract
-
-
-def named(findings: Findings, choice: Choice) -> Findings:
-    """What is said of a label, with the name and the colour that the label was chosen with."""
-    if findings.label is None or not isinstance(choice, Label):
-        return findings
-    color = None if choice.colour is None else "#" + bytes(choice.colour).hex()
-    return replace(findings, label=replace(findings.label, name=choice.name, color=color))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

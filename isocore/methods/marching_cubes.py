@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy.typing as npt
 
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
@@ -14,12 +17,12 @@ from isocore.choices import TOPOLOGIES
 from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
-from isocore.methods.carrying import volume_fields
-from isocore.methods.marching_cells import prepare_marching_cells
-from isocore.methods.normals import volume_normals
-from isocore.methods.simplifying import Mesh, Simplifier, volume_simplifier
+from isocore.methods.normals import Mesh, volume_normals
 from isocore.surface import place_fresh, places_of
 from isocore.volume import Volume
+
+if TYPE_CHECKING:
+    from isocore.methods.simplifying import Simplifier
 
 
 def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> Extract:
@@ -32,8 +35,14 @@ def prepare_marching_cubes(field: Field, options: Options, outlook: Outlook) -> 
             raise OptionError("--smooth: is for volumes; leave it out for meshes")
         if trilinear:
             raise OptionError("--topology trilinear: is for volumes; leave it out for meshes")
+        from isocore.methods.marching_cells import prepare_marching_cells  # late: volumes have none
+
         return prepare_marching_cells(field, options)
-    volume, simplify = field, volume_simplifier(field, options)
+    volume, simplify = field, None
+    if options.simplify is not None or options.triangles is not None:
+        from isocore.methods.simplifying import volume_simplifier  # late: not done by default
+
+        simplify = volume_simplifier(volume, options)
 
     def extract(isovalue: float) -> Extraction:
         stored = volume.stored_isovalue(isovalue)
@@ -79,9 +88,16 @@ def placed(
     normals = volume_normals(volume, mesh, options, measured=options.angles and error is not None)
     if error is not None:
         findings = replace(findings, error=replace(error, normal_degrees=normals.degrees))
-    fields = volume_fields(volume, mesh[0])
+    fields = _carried(volume, mesh) if volume.carried else {}
     surface = place_fresh(
         *mesh, normals.vertices, volume.affine, space=volume.space, unit=volume.unit, threads=options.threads
     )
     surface = replace(surface, fields=fields) if fields else surface
     return Extraction(surface, findings, warnings, normals.seconds, normals.seconds_degrees)
+
+
+def _carried(volume: Volume, mesh: Mesh) -> dict[str, npt.NDArray[Any]]:
+    """What the vertices have of each carried field, while they are where the kernel put them."""
+    from isocore.methods.carrying import volume_fields  # late: few volumes carry others
+
+    return volume_fields(volume, mesh[0])

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from isocore.errors import InputError, IsocoreError, about, reading
+from isocore.late import late
 from isocore.readers.carried_volumes import carried_files, with_carried
 from isocore.readers.formats import BY_SUFFIX, SEARCHED, Field, Format
 from isocore.readers.ignored import without_ignored
 from isocore.readers.options import ReadOptions
 from isocore.readers.packed import unpacked_bytes
 from isocore.readers.pointers import absence, pointer
-from isocore.readers.strangers import readable_as, what_it_is
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T")
+_Named = tuple[Format, str]
+#: What a file is whose suffix does not tell; most suffixes do.
+_readable_as: Callable[..., _Named | None] = late("readers.strangers", "readable_as")
+_what_it_is: Callable[..., str | None] = late("readers.strangers", "what_it_is")
 #: Of files without a header the content cannot tell what they are.
 _BARE = (".raw", ".raw.gz")
 
@@ -77,7 +81,7 @@ def files_of(path: Path, step: int | None = None) -> tuple[Path, ...]:
     try:
         if path.exists() and not path.is_file():  # a pipe would be waited for
             return (path,)
-        found = (BY_SUFFIX[suffix], "") if suffix else readable_as(path, BY_SUFFIX)
+        found = (BY_SUFFIX[suffix], "") if suffix else _readable_as(path, BY_SUFFIX)
         if found is None:
             return (path,)
         form = found[0]
@@ -105,7 +109,7 @@ def lists_surfaces(path: Path) -> bool:
 
 def stranger_of(path: Path) -> str | None:
     """What a file or a folder of an unknown suffix is, and what to do about it; None where nothing is known."""
-    return what_it_is(path, BY_SUFFIX, None) if suffix_of(path) is None else None
+    return _what_it_is(path, BY_SUFFIX, None) if suffix_of(path) is None else None
 
 
 def content_bytes(path: Path, step: int | None = None) -> int:
@@ -118,15 +122,15 @@ def _used(path: Path, use: Callable[[Format], T]) -> tuple[T, str]:
     _check_file(path)
     suffix = suffix_of(path)
     if suffix is None:
-        found = readable_as(path, BY_SUFFIX)
+        found = _readable_as(path, BY_SUFFIX)
         if found is None:
             known = f"has no suffix known here; known are {', '.join(SEARCHED)}"
-            raise InputError(what_it_is(path, BY_SUFFIX, None) or known)
+            raise InputError(_what_it_is(path, BY_SUFFIX, None) or known)
         return use(found[0]), f"has no suffix known here; its content is {found[1]}, and was read as that"
     try:
         return use(BY_SUFFIX[suffix]), ""
     except InputError:
-        found = None if suffix in _BARE else readable_as(path, BY_SUFFIX, BY_SUFFIX[suffix])
+        found = None if suffix in _BARE else _readable_as(path, BY_SUFFIX, BY_SUFFIX[suffix])
         if found is None:
             raise
     return use(found[0]), f"ends in {suffix}, but its content is {found[1]}, and was read as that"
@@ -165,7 +169,7 @@ def _stranger(path: Path, error: IsocoreError) -> str | None:
     bare = suffix in _BARE
     if suffix is None or not path.is_file() or not (isinstance(error, InputError) or bare):
         return None
-    if found := what_it_is(path, BY_SUFFIX, BY_SUFFIX[suffix], bare=bare):
+    if found := _what_it_is(path, BY_SUFFIX, BY_SUFFIX[suffix], bare=bare):
         return found
     beside = ((file, pointer(file)) for file in files_of(path)[1:])
     return next((f"its file {file.name} {found}" for file, found in beside if found), None)

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from isocore.cell_mesh import CellMesh
-from isocore.readers.nifti import count_nifti, nifti_files, read_nifti
-from isocore.readers.nrrd import count_nrrd, nrrd_files, read_nrrd
+from isocore.late import late
 from isocore.readers.options import ReadOptions
-from isocore.readers.raw import count_raw, raw_files, read_raw
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
@@ -62,59 +59,62 @@ class Format:
     unsearched: tuple[str, ...] = ()
 
 
-def _late(module: str, function: str) -> Callable[..., Any]:
-    """A function of a reader that is imported when it is first called: most files need few of the readers."""
-
-    def call(*arguments: Any) -> Any:
-        return getattr(import_module(f"isocore.readers.{module}"), function)(*arguments)
-
-    return call
-
-
 FORMATS = (
     Format(
         suffixes=(".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"),
-        read=read_nifti,
-        count=count_nifti,
-        files=nifti_files,
+        read=late("readers.nifti", "read_nifti"),
+        count=late("readers.nifti", "count_nifti"),
+        files=late("readers.nifti", "nifti_files"),
         unsearched=(".img", ".img.gz"),
     ),
-    Format(suffixes=(".nrrd", ".nhdr"), read=read_nrrd, count=count_nrrd, files=nrrd_files),
+    Format(
+        suffixes=(".nrrd", ".nhdr"),
+        read=late("readers.nrrd", "read_nrrd"),
+        count=late("readers.nrrd", "count_nrrd"),
+        files=late("readers.nrrd", "nrrd_files"),
+    ),
     Format(
         suffixes=(".mha", ".mhd"),
-        read=_late("metaimage", "read_metaimage"),
-        count=_late("metaimage", "count_metaimage"),
-        files=_late("metaimage", "metaimage_files"),
+        read=late("readers.metaimage", "read_metaimage"),
+        count=late("readers.metaimage", "count_metaimage"),
+        files=late("readers.metaimage", "metaimage_files"),
     ),
-    Format(suffixes=(".mgz", ".mgh"), read=_late("mgh", "read_mgh"), count=_late("mgh", "count_mgh")),
-    Format(suffixes=(".raw", ".raw.gz"), read=read_raw, count=count_raw, files=raw_files),
-    Format(suffixes=(".vtu",), read=_late("vtu", "read_vtu"), fields=_late("vtu", "vtu_fields")),
+    Format(suffixes=(".mgz", ".mgh"), read=late("readers.mgh", "read_mgh"), count=late("readers.mgh", "count_mgh")),
+    Format(
+        suffixes=(".raw", ".raw.gz"),
+        read=late("readers.raw", "read_raw"),
+        count=late("readers.raw", "count_raw"),
+        files=late("readers.raw", "raw_files"),
+    ),
+    Format(suffixes=(".vtu",), read=late("readers.vtu", "read_vtu"), fields=late("readers.vtu", "vtu_fields")),
     Format(
         suffixes=(".pvtu",),
-        read=_late("pvtu", "read_pvtu"),
-        files=_late("pvtu", "pvtu_files"),
-        fields=_late("pvtu", "pvtu_fields"),
+        read=late("readers.pvtu", "read_pvtu"),
+        files=late("readers.pvtu", "pvtu_files"),
+        fields=late("readers.pvtu", "pvtu_fields"),
         lists=True,
     ),
     Format(
-        suffixes=(".vtk",), read=_late("vtk_legacy", "read_legacy"), fields=_late("vtk_legacy", "legacy_fields")
+        suffixes=(".vtk",),
+        read=late("readers.vtk_legacy", "read_legacy"),
+        fields=late("readers.vtk_legacy", "legacy_fields"),
     ),
-    Format(suffixes=(".vti",), read=_late("vti", "read_vti"), fields=_late("vti", "vti_fields")),
+    Format(suffixes=(".vti",), read=late("readers.vti", "read_vti"), fields=late("readers.vti", "vti_fields")),
     Format(
         suffixes=(".pvti",),
-        read=_late("vti", "read_pvti"),
-        files=_late("vti", "pvti_files"),
-        fields=_late("vti", "pvti_fields"),
+        read=late("readers.vti", "read_pvti"),
+        files=late("readers.vti", "pvti_files"),
+        fields=late("readers.vti", "pvti_fields"),
         lists=True,
     ),
     Format(
         suffixes=(".pvd", *(f"{suffix}.series" for suffix in (".vtu", ".pvtu", ".vti", ".pvti", ".vtk"))),
-        read=_late("series", "read_step"),
-        count=_late("series", "count_step"),
-        files=_late("series", "series_files"),
-        fields=_late("series", "series_fields"),
-        times=_late("series", "times"),
-        step_files=_late("series", "series_files"),
+        read=late("readers.series", "read_step"),
+        count=late("readers.series", "count_step"),
+        files=late("readers.series", "series_files"),
+        fields=late("readers.series", "series_fields"),
+        times=late("readers.series", "times"),
+        step_files=late("readers.series", "series_files"),
         lists=True,
     ),
 )

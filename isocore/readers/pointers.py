@@ -13,22 +13,20 @@ from pathlib import Path
 from isocore.readers.members import MAGIC
 
 _HEAD = 1024  # bytes that are looked at
-_LFS = re.compile(
-    rb"version https://(?:git-lfs|hawser)\.github\.com/spec/v\d\s(?:.*\nsize (\d{1,18})\s)?", re.DOTALL
-)
-_ANNEX = re.compile(rb"[^\0\n]*annex[/\\]objects[/\\][^\0\n]*?(?:-s(\d{1,18})-[^\0\n]*)?(?:\n|\Z)")
+_LFS = rb"version https://(?:git-lfs|hawser)\.github\.com/spec/v\d\s(?:.*\nsize (\d{1,18})\s)?"
+_ANNEX = rb"[^\0\n]*annex[/\\]objects[/\\][^\0\n]*?(?:-s(\d{1,18})-[^\0\n]*)?(?:\n|\Z)"
 #: A checkout without symbolic links has their text as files.
-_LINK = re.compile(rb"[\x20-\x7e\x80-\xff]+/[\x20-\x7e\x80-\xff]+\n?\Z")
+_LINK = rb"[\x20-\x7e\x80-\xff]+/[\x20-\x7e\x80-\xff]+\n?\Z"
 
 
 def pointer(path: Path) -> str | None:
     """What to do where `path` is a pointer to data that is elsewhere; None where it is none."""
     head = first_bytes(path)
-    if found := _LFS.match(head):
+    if found := re.match(_LFS, head, re.DOTALL):
         return f"is a git-lfs pointer{_of_a_file(found[1])}; run git lfs pull"
-    if found := _ANNEX.match(head):
+    if found := re.match(_ANNEX, head):
         return f"is a git-annex pointer{_of_a_file(found[1])} that is not here; run git annex get"
-    if len(head) < _HEAD and _LINK.match(head):
+    if len(head) < _HEAD and re.match(_LINK, head):
         target = os.fsdecode(head.rstrip(b"\n"))
         if target.lower().endswith(path.suffix.lower()):
             return f"is the text of a link to {target[:100]}; give that file, or check out with symbolic links"

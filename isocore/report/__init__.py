@@ -9,32 +9,26 @@ from collections.abc import Callable
 from pathlib import Path
 
 from isocore.errors import InputError, OptionError, reading
-from isocore.report.copies_found import copies_path, save_copies, with_copies
-from isocore.report.keys import SCHEMA, batch_as_dict, batch_from_dict, run_as_dict, run_from_dict
+from isocore.late import late
 from isocore.report.record import BatchReport, RunReport
-from isocore.report.render_benchmark import render_benchmark
-from isocore.report.render_csv import render_csv
-from isocore.report.render_github import github_annotations
-from isocore.report.render_html import MESH_BYTES, render_html
-from isocore.report.render_json import render_json, render_jsonl
-from isocore.report.render_junit import render_junit
-from isocore.report.render_markdown import render_markdown
-from isocore.report.schema import parsed
 from isocore.whole_file import whole_file
 
-Renderer = Callable[[BatchReport], str]
+Renderer = Callable[..., str]
+
+#: Bytes of all copies of surfaces in a page together, unless told otherwise.
+MESH_BYTES = 16 << 20
 
 RENDERERS: dict[str, Renderer] = {
-    ".json": render_json,
-    ".jsonl": render_jsonl,
-    ".csv": render_csv,
-    ".html": render_html,
-    ".md": render_markdown,
-    ".xml": render_junit,
+    ".json": late("report.render_json", "render_json"),
+    ".jsonl": late("report.render_json", "render_jsonl"),
+    ".csv": late("report.render_csv", "render_csv"),
+    ".html": late("report.render_html", "render_html"),
+    ".md": late("report.render_markdown", "render_markdown"),
+    ".xml": late("report.render_junit", "render_junit"),
 }
 
 #: Formats that share a suffix with another: chosen by the whole name.
-NAMED_RENDERERS: dict[str, Renderer] = {"bench.json": render_benchmark}
+NAMED_RENDERERS: dict[str, Renderer] = {"bench.json": late("report.render_benchmark", "render_benchmark")}
 
 
 def renderer_for(path: Path) -> Renderer:
@@ -51,13 +45,17 @@ def save_report(batch: BatchReport, path: Path, *, mesh_bytes: int = MESH_BYTES)
     mesh_bytes bounds the copies of the surfaces in a page, which are made from the meshes where a run has none.
     """
     renderer = renderer_for(path)
-    text = render_html(batch, mesh_bytes=mesh_bytes, page=path) if renderer is render_html else renderer(batch)
+    is_page = renderer is RENDERERS[".html"]
+    text = renderer(batch, mesh_bytes=mesh_bytes, page=path) if is_page else renderer(batch)
     with whole_file(path) as stream:
         stream.write(text.encode())
 
 
 def load_report(path: Path) -> BatchReport:
     """A JSON report, as save_report wrote it. Raises InputError for anything else."""
+    from isocore.report.keys import SCHEMA, batch_from_dict  # late: a run that writes no report needs no keys
+    from isocore.report.schema import parsed
+
     with reading(path):
         data = path.read_bytes()
         try:
@@ -85,17 +83,8 @@ __all__ = [
     "RENDERERS",
     "BatchReport",
     "RunReport",
-    "batch_as_dict",
-    "batch_from_dict",
-    "copies_path",
-    "github_annotations",
     "load_report",
     "merged",
-    "render_json",
     "renderer_for",
-    "run_as_dict",
-    "run_from_dict",
-    "save_copies",
     "save_report",
-    "with_copies",
 ]

@@ -134,11 +134,3 @@ def _kept_copies(report: Path) -> dict[tuple[str, str, str], Copy]:
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return {}
     return {key: copy for key, copy in found.items() if copy is not None}
-
-
-def working_folder() -> str:
-    """Where relative paths of this process start; "" where that is gone."""
-    try:
-        return str(Path.cwd())
-    except OSError:
-        return ""

@@ -7,6 +7,7 @@ import os
 import platform
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from isocore import _kernels
@@ -133,3 +134,11 @@ def host() -> dict[str, Any]:
         "cpus": os.cpu_count(),
         "python": ".".join(str(part) for part in sys.version_info[:3]),
     }
+
+
+def working_folder() -> str:
+    """Where relative paths of this process start; "" where that is gone."""
+    try:
+        return str(Path.cwd())
+    except OSError:
+        return ""

@@ -13,26 +13,21 @@ from typing import BinaryIO
 
 from isocore.choices import FORMATS, Format
 from isocore.errors import OptionError, writing
+from isocore.late import late
 from isocore.surface import Surface
 from isocore.whole_file import whole_file
-from isocore.writers.gifti import write_gifti
-from isocore.writers.glb import write_glb
-from isocore.writers.obj import write_obj
-from isocore.writers.ply import write_ply
 from isocore.writers.rounding import rounded
-from isocore.writers.stl import write_stl
-from isocore.writers.vtp import write_vtp
 
 Writer = Callable[[BinaryIO, Surface, int], None]
 
 #: suffix -> writer(stream, surface, threads); coordinates are rounded before (rounding.py).
 WRITERS: dict[str, Writer] = {
-    ".ply": write_ply,
-    ".obj": write_obj,
-    ".stl": write_stl,
-    ".glb": write_glb,
-    ".gii": write_gifti,
-    ".vtp": write_vtp,
+    ".ply": late("writers.ply", "write_ply"),
+    ".obj": late("writers.obj", "write_obj"),
+    ".stl": late("writers.stl", "write_stl"),
+    ".glb": late("writers.glb", "write_glb"),
+    ".gii": late("writers.gifti", "write_gifti"),
+    ".vtp": late("writers.vtp", "write_vtp"),
 }
 
 

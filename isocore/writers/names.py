@@ -9,7 +9,7 @@ from unicodedata import normalize
 
 import numpy.typing as npt
 
-_UNSAFE = re.compile(r"[^A-Za-z0-9_]+")
+_UNSAFE = r"[^A-Za-z0-9_]+"
 _AXES = "xyz"
 
 
@@ -22,7 +22,7 @@ def column_names(fields: Mapping[str, npt.NDArray[Any]], taken: Iterable[str] = 
     for name, values in fields.items():
         count = 1 if values.ndim == 1 else values.shape[1]
         ends = _ends(values.ndim, count)
-        base = _UNSAFE.sub("_", normalize("NFKD", name).encode("ascii", "ignore").decode()).strip("_") or "field"
+        base = re.sub(_UNSAFE, "_", normalize("NFKD", name).encode("ascii", "ignore").decode()).strip("_") or "field"
         stem, number = base, 1
         while known & {f"{stem}{end}".lower() for end in ends}:
             number += 1
