@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -63,7 +62,7 @@ def whole_file(target: os.PathLike[str] | str) -> Iterator[BinaryIO]:
 def _new_part(path: Path) -> tuple[Path, BinaryIO]:
     """A new file beside `path`, open and locked."""
     while True:
-        part = path.with_name(f"{kept_name(path)}.{this_machine()}{secrets.token_hex(4)}{SUFFIX}")
+        part = path.with_name(f"{kept_name(path)}.{this_machine()}{os.urandom(4).hex()}{SUFFIX}")
         stream = part.open("xb")
         try:
             lock(stream, wait=True)
