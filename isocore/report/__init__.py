@@ -10,13 +10,10 @@ from pathlib import Path
 
 from isocore.errors import InputError, OptionError, reading
 from isocore.late import late
-from isocore.report.record import BatchReport, RunReport
+from isocore.report.record import MESH_BYTES, BatchReport, RunReport
 from isocore.whole_file import whole_file
 
 Renderer = Callable[..., str]
-
-#: Bytes of all copies of surfaces in a page together, unless told otherwise.
-MESH_BYTES = 16 << 20
 
 RENDERERS: dict[str, Renderer] = {
     ".json": late("report.render_json", "render_json"),

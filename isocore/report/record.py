@@ -19,6 +19,9 @@ from isocore.measurements import Measurements
 from isocore.report.sections import Asked, Carried, Colors, Ratio, Reference, Seconds, Written
 from isocore.version import __version__
 
+#: Of all copies of surfaces in a page together, unless told otherwise.
+MESH_BYTES = 16 << 20
+
 Status = Literal["done", "empty", "skipped", "failed"]
 
 

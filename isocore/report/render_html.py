@@ -11,7 +11,7 @@ from urllib.parse import quote
 
 from isocore.report.copies_found import with_copies
 from isocore.report.keys import batch_as_dict
-from isocore.report.record import BatchReport
+from isocore.report.record import MESH_BYTES, BatchReport
 from isocore.report.texts import shown_json
 from isocore.writers.colormaps import colormap
 
@@ -19,7 +19,7 @@ _PARTS = Path(__file__).parent / "page"
 _SCRIPTS = ("page.js", "facts.js", "viewer.js", "start.js")
 
 
-def render_html(batch: BatchReport, *, mesh_bytes: int, page: Path | None = None) -> str:
+def render_html(batch: BatchReport, *, mesh_bytes: int = MESH_BYTES, page: Path | None = None) -> str:
     """The page. mesh_bytes bounds what the copies of the surfaces add to it; 0 leaves them out.
 
     page: where it will lie; it then has links to the meshes.
