@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, IsocoreError
@@ -123,7 +125,7 @@ def ready_index(mesh: CellMesh, index: MeshIndex, *, built: bool = False) -> _ke
     """
     tets, hexes = ((part.records, part.skeleton, part.low, part.high) for part in index.parts)
     return _kernels.Index(
-        points=mesh.points[index.original],
+        points=np.take(mesh.points, index.original, axis=0),  # half the time of an index
         values=mesh.values[index.original],
         tets=tets,
         hexes=hexes,

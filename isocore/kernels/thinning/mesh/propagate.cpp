@@ -132,19 +132,29 @@ class Drawing {
             const auto& ends = Cell::kShape.ends[edge];
             place[edge] = table.place(corners[ends[0]], corners[ends[1]]);
         }
-        const auto first_middle = static_cast<uint32_t>(out.middles.size());
+        const size_t first = out.triangles.size(), size = 3u * drawn.triangles;
+        out.triangles.resize(first + size);
+        uint32_t* triangles = out.triangles.data() + first;
+        if (drawn.middles > 0) return draw_around_middles(drawn, place, triangles, out);
+        for (size_t n = 0; n < size; ++n) triangles[n] = place[drawn.edges[n]];
+    }
+
+    template <class Case, class Edges>
+    static void draw_around_middles(const Case& drawn, const Edges& place, uint32_t* triangles, Drawn& out) {
+        const auto first_triangle = static_cast<uint32_t>((triangles - out.triangles.data()) / 3),
+                   first_middle = static_cast<uint32_t>(out.middles.size());
         out.middles.resize(first_middle + drawn.middles, {0, 0});
-        for (size_t n = 0; n < 3u * drawn.triangles; ++n) {
+        for (uint32_t n = 0; n < 3u * drawn.triangles; ++n) {
             const size_t edge = drawn.edges[n];
             if (edge < mesh::kMiddle) {
-                out.triangles.push_back(place[edge]);
+                triangles[n] = place[edge];
                 continue;
             }
             const auto middle = first_middle + static_cast<uint32_t>(edge - mesh::kMiddle);
-            const auto triangle = static_cast<uint32_t>(out.triangles.size() / 3);
+            const uint32_t triangle = first_triangle + n / 3;
             if (out.middles[middle][1] == 0) out.middles[middle][0] = triangle;
             out.middles[middle][1] = triangle + 1;
-            out.triangles.push_back(Drawn::kMiddles + middle);
+            triangles[n] = Drawn::kMiddles + middle;
         }
     }
 

@@ -84,26 +84,30 @@ class Walk {
     static constexpr std::size_t kWord = 64;  // cells
     static constexpr std::size_t kRecordsAhead = 16, kValuesAhead = 8, kWorthSharing = 64;
 
-    // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed.
+    // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed. Behind
+    // the cells there is always room for those that one step may find.
     void follow(Array<std::int32_t>& cells, SharedCells* shared) {
-        for (std::size_t head = 0; head < cells.size(); ++head) {
-            if (head + kRecordsAhead < cells.size()) prefetch_record(cells[head + kRecordsAhead]);
-            if (head + kValuesAhead < cells.size()) prefetch_values(cells[head + kValuesAhead]);
-            step(cells[head], cells, shared == nullptr);
-            if (shared == nullptr || cells.size() - head < kWorthSharing || !shared->wanted()) continue;
-            const auto half = cells.end() - static_cast<std::ptrdiff_t>((cells.size() - head) / 2);
-            shared->give({half, cells.end()});
-            cells.erase(half, cells.end());
+        std::size_t count = cells.size();
+        for (std::size_t head = 0; head < count; ++head) {
+            if (count + Cell::kFaces > cells.size()) cells.resize(2 * count + kWorthSharing);
+            if (head + kRecordsAhead < count) prefetch_record(cells[head + kRecordsAhead]);
+            if (head + kValuesAhead < count) prefetch_values(cells[head + kValuesAhead]);
+            count += step(cells[head], cells.data() + count, shared == nullptr);
+            if (shared == nullptr || count - head < kWorthSharing || !shared->wanted()) continue;
+            const std::size_t half = (count - head) / 2;
+            const auto end = cells.begin() + static_cast<std::ptrdiff_t>(count);
+            shared->give({end - static_cast<std::ptrdiff_t>(half), end});
+            count -= half;
         }
     }
 
-    // Which neighbours are new is unpredictable, so there is no branch on it where no other thread could come between.
-    void step(std::int32_t cell, Array<std::int32_t>& found, bool alone) {
+    // Writes the neighbours that are new and returns how many these are. Which ones is unpredictable, so there is no
+    // branch on it where no other thread could come between.
+    std::size_t step(std::int32_t cell, std::int32_t* found, bool alone) {
         const std::int32_t *corners = record(cell), *twins = corners + Cell::kCorners;
         const mesh::Mask crossed = mesh::kCrossedFaces<Cell>[signs(corners)];
+        std::size_t count = 0;
         if (alone) {
-            std::size_t count = found.size();
-            found.resize(count + Cell::kFaces);
             for (std::size_t n = 0; n < Cell::kFaces; ++n) {
                 const bool there = (crossed >> n & 1) & (twins[n] >= 0);
                 const std::uint32_t next = static_cast<std::uint32_t>(there ? twins[n] : 0) / Cell::kFaces;
@@ -114,14 +118,14 @@ class Walk {
                 found[count] = static_cast<std::int32_t>(next);
                 count += (bit & ~before) != 0;
             }
-            found.resize(count);
-            return;
+            return count;
         }
         for (std::size_t n = 0; n < Cell::kFaces; ++n) {
             if (!(crossed >> n & 1) || twins[n] < 0) continue;
             const std::int32_t next = twins[n] / static_cast<std::int32_t>(Cell::kFaces);
-            if (mark(next, false)) found.push_back(next);
+            if (mark(next, false)) found[count++] = next;
         }
+        return count;
     }
 
     // Marks a cell as visited; returns whether it was not. Without other threads no atomic exchange is needed.
