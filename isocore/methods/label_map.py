@@ -36,7 +36,7 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     volume, background = field, options.background or 0
     simplifier = volume_simplifier(volume, options, default=options.max_error is not None)
     census = take_census(volume, background)
-    ranks = _ranks(census.values, background)
+    ranks = label_ranks(census.values, background)
     surfaces = _kernels.label_surfaces(volume.samples, census.stored, ranks, options.threads)
     if options.smooth:
         surfaces.smooth(options.smooth, options.threads)
@@ -115,7 +115,7 @@ def _too_many(census: _kernels.LabelCensus) -> FieldError:
     )
 
 
-def _ranks(values: npt.NDArray[np.float64], background: int) -> npt.NDArray[np.uint32]:
+def label_ranks(values: npt.NDArray[np.float64], background: int) -> npt.NDArray[np.uint32]:
     """Of each value: 0 for background, then by number."""
     labels = values != background
     ranks = np.zeros(len(values), np.uint32)

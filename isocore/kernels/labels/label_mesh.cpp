@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/large_pages.hpp"
 #include "common/parallel.hpp"
 #include "labels/slab.hpp"
 #include "samples/sample_types.hpp"
@@ -17,25 +18,21 @@ namespace {
 constexpr std::size_t kLayers = 16;
 
 // Writes a plane of ranks with background around it; planes before the first and after the last are background.
-template <class Sample>
-void load_plane(const GridView<Sample>& samples, const RankTable& ranks, std::size_t plane, std::uint32_t* out) {
+template <class Sample, class Rank>
+void load_plane(const GridView<Sample>& samples, const RankTable& ranks, std::size_t plane, Rank* out) {
     const std::size_t row = samples.dims[0] + 2, rows = samples.dims[1] + 2;
     if (plane == 0 || plane > samples.dims[2]) {
-        std::fill_n(out, row * rows, 0);
+        std::fill_n(out, row * rows, Rank{0});
         return;
     }
-    std::fill_n(out, row, 0);
-    std::fill_n(out + row * (rows - 1), row, 0);
+    std::fill_n(out, row, Rank{0});
+    std::fill_n(out + row * (rows - 1), row, Rank{0});
     for (std::size_t j = 0; j < samples.dims[1]; ++j) {
-        std::uint32_t* line = out + row * (j + 1);
+        Rank* line = out + row * (j + 1);
         line[0] = line[row - 1] = 0;
         ranks.look_up(samples.row(j, plane - 1), samples.dims[0], line + 1);
     }
 }
-
-struct Sizes {
-    std::size_t vertices = 0, triangles = 0, curves = 0;
-};
 
 // Moves a slab's mesh to its place in the whole, and frees it. A negative number names a vertex of the plane below,
 // whose vertices end where the middles of the layer below begin.
@@ -50,19 +47,30 @@ void place_slab(SlabMesh& slab, const Sizes& at, std::size_t middles_below, Labe
     slab = {};
 }
 
+// Extracts the slabs one by one.
+template <class Rank, class Sample>
+std::vector<SlabMesh> draw_slabs(const GridView<Sample>& samples, const RankTable& ranks, int threads) {
+    const Dims dims{samples.dims[0] + 2, samples.dims[1] + 2, samples.dims[2] + 2};
+    const std::size_t layers = dims[2] - 1;
+    std::vector<SlabMesh> slabs((layers + kLayers - 1) / kLayers);
+    parallel_for(
+        threads, slabs.size(), [&] { return Slab<Rank>(dims); },
+        [&](Slab<Rank>& slab, std::size_t n) {
+            const auto load = [&](std::size_t plane, Rank* out) { load_plane(samples, ranks, plane, out); };
+            slabs[n] = slab.draw(n * kLayers, std::min(layers, (n + 1) * kLayers), load);
+        });
+    return slabs;
+}
+
 }  // namespace
 
 template <class Sample>
 LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads) {
-    const Dims dims{samples.dims[0] + 2, samples.dims[1] + 2, samples.dims[2] + 2};
-    const std::size_t layers = dims[2] - 1, count = (layers + kLayers - 1) / kLayers;
-    std::vector<SlabMesh> slabs(count);
-    parallel_for(
-        threads, count, [&] { return Slab(dims); },
-        [&](Slab& slab, std::size_t n) {
-            const auto load = [&](std::size_t plane, std::uint32_t* out) { load_plane(samples, ranks, plane, out); };
-            slabs[n] = slab.draw(n * kLayers, std::min(layers, (n + 1) * kLayers), load);
-        });
+    const auto holds = [&]<class Rank>(Rank) { return ranks.highest() <= std::numeric_limits<Rank>::max(); };
+    std::vector<SlabMesh> slabs = holds(std::uint8_t{})    ? draw_slabs<std::uint8_t>(samples, ranks, threads)
+                                  : holds(std::uint16_t{}) ? draw_slabs<std::uint16_t>(samples, ranks, threads)
+                                                           : draw_slabs<std::uint32_t>(samples, ranks, threads);
+    const std::size_t count = slabs.size();
     std::vector<Sizes> starts(count + 1);
     for (std::size_t n = 0; n < count; ++n) {
         starts[n + 1] = {starts[n].vertices + slabs[n].elements.size(), starts[n].triangles + slabs[n].sides.size() / 2,
@@ -74,12 +82,10 @@ LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads)
     }
     std::vector<std::size_t> middles(count + 1);
     for (std::size_t n = 0; n < count; ++n) middles[n + 1] = slabs[n].last_middles;
-    LabelMesh mesh;
-    mesh.vertices.resize(3 * starts[count].vertices);
-    mesh.elements.resize(starts[count].vertices);
-    mesh.triangles.resize(3 * starts[count].triangles);
-    mesh.sides.resize(2 * starts[count].triangles);
-    mesh.curves.resize(starts[count].curves);
+    LabelMesh mesh{large_array<float>(3 * starts[count].vertices), large_array<Element>(starts[count].vertices),
+                   large_array<std::int32_t>(3 * starts[count].triangles),
+                   large_array<std::uint32_t>(2 * starts[count].triangles),
+                   large_array<std::int32_t>(starts[count].curves)};
     parallel_for(threads, count, [&](std::size_t n) { place_slab(slabs[n], starts[n], middles[n], mesh); });
     return mesh;
 }

@@ -20,6 +20,7 @@ class RankTable {
     // `values` (each once, any order) have the ranks of the same place.
     RankTable(std::span<const double> values, std::span<const std::uint32_t> ranks)
         : slots_(std::bit_ceil(2 * values.size() + 2)), direct_(std::size_t{1} << 16, 0) {
+        for (const std::uint32_t rank : ranks) highest_ = std::max(highest_, rank);
         for (std::size_t n = 0; n < values.size(); ++n) {
             std::size_t slot = first_slot(values[n]);
             while (slots_[slot].used) slot = (slot + 1) & (slots_.size() - 1);
@@ -30,19 +31,22 @@ class RankTable {
         }
     }
 
-    // The ranks of `count` samples.
-    template <class Sample>
-    void look_up(const Sample* samples, std::size_t count, std::uint32_t* out) const {
+    std::uint32_t highest() const { return highest_; }
+
+    // The ranks of `count` samples. Rank holds the highest.
+    template <class Sample, class Rank>
+    void look_up(const Sample* samples, std::size_t count, Rank* out) const {
         if constexpr (sizeof(Sample) <= 2) {
             // Values of one type of at most 16 bits never share a place of the table.
-            for (std::size_t n = 0; n < count; ++n) out[n] = direct_[static_cast<std::uint16_t>(samples[n])];
+            for (std::size_t n = 0; n < count; ++n)
+                out[n] = static_cast<Rank>(direct_[static_cast<std::uint16_t>(samples[n])]);
         } else {
             Sample last{};
-            std::uint32_t rank = rank_of(0);
+            auto rank = static_cast<Rank>(rank_of(0));
             for (std::size_t n = 0; n < count; ++n) {
                 if (samples[n] != last) {
                     last = samples[n];
-                    rank = rank_of(static_cast<double>(last));
+                    rank = static_cast<Rank>(rank_of(static_cast<double>(last)));
                 }
                 out[n] = rank;
             }
@@ -70,6 +74,7 @@ class RankTable {
 
     std::vector<Slot> slots_;
     std::vector<std::uint32_t> direct_;
+    std::uint32_t highest_ = 0;
 };
 
 }  // namespace isocore::labels

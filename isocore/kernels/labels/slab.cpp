@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/cube.hpp"
+#include "common/large_pages.hpp"
 
 namespace isocore::labels {
 namespace {
@@ -24,30 +25,16 @@ std::size_t lowest_byte(std::uint64_t word) {
     return static_cast<std::size_t>(bit) / 8;
 }
 
-// Calls visit(place) for every place of [begin, end) whose mark is not 0.
-template <class Visit>
-void for_each_marked(const std::vector<std::uint8_t>& marks, std::size_t begin, std::size_t end, const Visit& visit) {
-    for (std::size_t at = begin; at < end;) {
-        const std::uint64_t word = word_at(marks, at);
-        if (word == 0) {
-            at += kWord;
-            continue;
-        }
-        at += lowest_byte(word);
-        if (at < end) visit(at);
-        ++at;
-    }
-}
-
-// Marks the squares that four rows of ranks bound, a and b along one line, c and d along the next. `along` and `up` are
-// the bits of the edges a-b and a-c. Plain loops over bytes, for the compiler to vectorise.
-void mark_faces(const std::uint32_t* a, const std::uint32_t* b, const std::uint32_t* c, const std::uint32_t* d,
-                std::size_t count, unsigned bit, std::uint8_t* marks) {
+// Marks the squares that four rows of ranks bound, a and b along one line, c and d along the next: does what they show
+// have a vertex in the middle? Plain loops over bytes, for the compiler to vectorise.
+template <class Rank>
+void mark_faces(const Rank* a, const Rank* b, const Rank* c, const Rank* d, std::size_t count, unsigned bit,
+                std::uint8_t* marks) {
     for (std::size_t n = 0; n < count; ++n) {
-        const unsigned low = a[n] != b[n], right = b[n] != d[n], high = d[n] != c[n], left = c[n] != a[n];
-        const unsigned crossings = low + right + high + left;
-        const unsigned apart = (a[n] != d[n]) & (b[n] != c[n]);
-        const unsigned meets = (crossings == 3) | ((crossings == 4) & apart);
+        const std::uint8_t low = a[n] != b[n], right = b[n] != d[n], high = d[n] != c[n], left = c[n] != a[n];
+        const std::uint8_t apart = (a[n] != d[n]) & (b[n] != c[n]);
+        const auto crossings = static_cast<std::uint8_t>(low + right + high + left);
+        const auto meets = static_cast<std::uint8_t>((crossings == 3) | ((crossings == 4) & apart));
         marks[n] = static_cast<std::uint8_t>(marks[n] | meets << bit);
     }
 }
@@ -74,7 +61,8 @@ const CellDisks& DiskCache::of(const CornerRanks& ranks) {
     return found != of_more_.end() ? found->second : of_more_.emplace(key, derive_disks(ranks)).first->second;
 }
 
-Slab::Slab(const Dims& dims) : dims_(dims), row_(dims[0]), plane_(dims[0] * dims[1]) {
+template <class Rank>
+Slab<Rank>::Slab(const Dims& dims) : dims_(dims), row_(dims[0]), plane_(dims[0] * dims[1]) {
     // One more row of background, and a word, lie behind every plane, so that looking at the next row needs no
     // question.
     const std::size_t size = plane_ + row_ + kWord;
@@ -87,68 +75,112 @@ Slab::Slab(const Dims& dims) : dims_(dims), row_(dims[0]), plane_(dims[0] * dims
     for (auto& numbers : upright_numbers_) numbers.resize(size);
 }
 
-void Slab::survey_plane(Plane& plane) const {
-    const std::uint32_t *here = plane.ranks.data(), *next = here + row_;
+// Slabs that follow one another are of much the same size.
+template <class Rank>
+void Slab<Rank>::make_room() {
+    const auto reserve = [](auto& array, std::size_t size) {
+        array.reserve(size);
+        ask_for_large_pages(array);
+    };
+    mesh_ = {};
+    reserve(mesh_.vertices, 3 * expected_.vertices);
+    reserve(mesh_.elements, expected_.vertices);
+    reserve(mesh_.triangles, 3 * expected_.triangles);
+    reserve(mesh_.sides, 2 * expected_.triangles);
+    reserve(mesh_.curves, expected_.curves);
+}
+
+template <class Rank>
+SlabMesh Slab<Rank>::finished() {
+    const auto little_more = [](std::size_t size) { return size + size / 8; };
+    expected_ = {little_more(mesh_.elements.size()), little_more(mesh_.sides.size() / 2),
+                 little_more(mesh_.curves.size())};
+    return std::move(mesh_);
+}
+
+template <class Rank>
+void Slab<Rank>::survey_plane(Plane& plane) const {
+    const Rank *here = plane.ranks.data(), *next = here + row_;
     std::uint8_t* marks = plane.marks.data();
-    for (std::size_t n = 0; n < plane_; ++n) {
-        const unsigned x = here[n] != here[n + 1], y = here[n] != next[n];
+    const std::size_t count = plane_;  // which the compiler cannot know to stay while bytes are written
+    for (std::size_t n = 0; n < count; ++n) {
+        const std::uint8_t x = here[n] != here[n + 1], y = here[n] != next[n];
         marks[n] = static_cast<std::uint8_t>(x | y << 1);
     }
-    mark_faces(here, here + 1, next, next + 1, plane_, 2, marks);
+    mark_faces(here, here + 1, next, next + 1, count, 2, marks);
 }
 
-void Slab::survey_layer() {
-    const std::uint32_t *low = low_.ranks.data(), *high = high_.ranks.data();
+template <class Rank>
+void Slab<Rank>::survey_layer() {
+    const Rank *low = low_.ranks.data(), *high = high_.ranks.data();
     std::uint8_t* marks = upright_marks_.data();
-    for (std::size_t n = 0; n < plane_; ++n) marks[n] = low[n] != high[n];
-    mark_faces(low, low + 1, high, high + 1, plane_, 1, marks);
-    mark_faces(low, low + row_, high, high + row_, plane_, 2, marks);
+    const std::size_t count = plane_, row = row_;
+    for (std::size_t n = 0; n < count; ++n) marks[n] = low[n] != high[n];
+    mark_faces(low, low + 1, high, high + 1, count, 1, marks);
+    mark_faces(low, low + row, high, high + row, count, 2, marks);
 }
 
-std::int32_t Slab::add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element) {
+template <class Rank>
+std::int32_t Slab<Rank>::add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element) {
     const std::size_t number = mesh_.elements.size();
     const std::array<std::size_t, 3> at{i, j, k};
+    std::array<float, 3> place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float middle = element >> axis & 1 ? 0.5f : 0.0f;
-        mesh_.vertices.push_back(static_cast<float>(at[axis]) - 1.0f + middle);  // less the layer of background
+        place[axis] = static_cast<float>(at[axis]) - 1.0f + middle;  // less the layer of background
     }
+    mesh_.vertices.insert(mesh_.vertices.end(), place.begin(), place.end());
     mesh_.elements.push_back(element);
     return static_cast<std::int32_t>(number);
 }
 
-void Slab::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
-    constexpr std::array<Element, 3> kElements{1, 2, 3};
-    std::int32_t before = 0;
-    const auto each = [&](const auto& number) {
-        for_each_marked(plane.marks, 0, plane_, [&](std::size_t at) {
-            for (std::size_t n = 0; n < 3; ++n) {
-                if (plane.marks[at] >> n & 1) number(n, at);
+template <class Rank>
+template <class Visit>
+void Slab<Rank>::for_each_marked(const std::vector<std::uint8_t>& marks, const Visit& visit) const {
+    for (std::size_t j = 0; j < dims_[1]; ++j) {
+        const std::size_t begin = j * row_, end = begin + row_;
+        for (std::size_t at = begin; at < end;) {
+            const std::uint64_t word = word_at(marks, at);
+            if (word == 0) {
+                at += kWord;
+                continue;
             }
-        });
-    };
-    if (!of_slab_before) {
-        each([&](std::size_t n, std::size_t at) {
-            plane.numbers[n][at] = add_vertex(at % row_, at / row_, k, kElements[n]);
-        });
-        return;
+            at += lowest_byte(word);
+            if (at < end) visit(at, at - begin, j);
+            ++at;
+        }
     }
-    each([&](std::size_t, std::size_t) { --before; });
-    each([&](std::size_t n, std::size_t at) { plane.numbers[n][at] = before++; });
 }
 
-void Slab::number_layer(std::size_t k) {
-    constexpr std::array<Element, 3> kElements{4, 5, 6};
-    for_each_marked(upright_marks_, 0, plane_, [&](std::size_t at) {
+template <class Rank>
+void Slab<Rank>::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
+    constexpr std::array<Element, 3> kElements{1, 2, 3};
+    std::int32_t before = 0;
+    if (of_slab_before) {
+        for_each_marked(plane.marks,
+                        [&](std::size_t at, std::size_t, std::size_t) { before -= std::popcount(plane.marks[at]); });
+    }
+    for_each_marked(plane.marks, [&](std::size_t at, std::size_t i, std::size_t j) {
         for (std::size_t n = 0; n < 3; ++n) {
-            if (upright_marks_[at] >> n & 1) {
-                upright_numbers_[n][at] = add_vertex(at % row_, at / row_, k, kElements[n]);
-            }
+            if (plane.marks[at] >> n & 1)
+                plane.numbers[n][at] = of_slab_before ? before++ : add_vertex(i, j, k, kElements[n]);
+        }
+    });
+}
+
+template <class Rank>
+void Slab<Rank>::number_layer(std::size_t k) {
+    constexpr std::array<Element, 3> kElements{4, 5, 6};
+    for_each_marked(upright_marks_, [&](std::size_t at, std::size_t i, std::size_t j) {
+        for (std::size_t n = 0; n < 3; ++n) {
+            if (upright_marks_[at] >> n & 1) upright_numbers_[n][at] = add_vertex(i, j, k, kElements[n]);
         }
     });
 }
 
 // A cell has anything to draw if its corners are not all alike: if one of seven edges that connect them is crossed.
-void Slab::draw_layer(std::size_t k) {
+template <class Rank>
+void Slab<Rank>::draw_layer(std::size_t k) {
     const std::size_t before = mesh_.elements.size();
     constexpr std::uint64_t kAlongX = 0x0101010101010101u, kAlongBoth = 0x0303030303030303u;
     for (std::size_t j = 0; j + 1 < dims_[1]; ++j) {
@@ -171,8 +203,9 @@ void Slab::draw_layer(std::size_t k) {
     mesh_.last_middles = mesh_.elements.size() - before;
 }
 
-void Slab::draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k) {
-    const std::uint32_t *low = low_.ranks.data() + at, *high = high_.ranks.data() + at;
+template <class Rank>
+void Slab<Rank>::draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k) {
+    const Rank *low = low_.ranks.data() + at, *high = high_.ranks.data() + at;
     const CornerRanks ranks{low[0], low[1], low[row_], low[row_ + 1], high[0], high[1], high[row_], high[row_ + 1]};
     unsigned others = 0;
     std::uint32_t other = ranks[0];
@@ -189,7 +222,8 @@ void Slab::draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k
     write_cell(disks, ranks, at, middle);
 }
 
-void Slab::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle) {
+template <class Rank>
+void Slab<Rank>::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle) {
     std::array<std::int32_t, 19> number;
     const std::array<const Plane*, 2> plane{&low_, &high_};
     for (std::size_t n = 0; n < 4; ++n) {
@@ -204,6 +238,11 @@ void Slab::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::siz
         number[16 + side] = plane[side]->numbers[2][at];
     }
     number[kMiddle] = middle;
+    const std::size_t before = mesh_.sides.size() / 2, count = disks.triangles.size();
+    mesh_.triangles.resize(3 * (before + count));
+    mesh_.sides.resize(2 * (before + count));
+    std::int32_t* corners = mesh_.triangles.data() + 3 * before;
+    std::uint32_t* sides = mesh_.sides.data() + 2 * before;
     for (const CellTriangle& triangle : disks.triangles) {
         auto [a, b, c] = triangle.places;
         std::uint32_t behind = ranks[triangle.behind], ahead = ranks[triangle.ahead];
@@ -211,14 +250,18 @@ void Slab::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::siz
             std::swap(behind, ahead);
             std::swap(b, c);
         }
-        for (const auto place : {a, b, c}) mesh_.triangles.push_back(number[place]);
-        mesh_.sides.push_back(behind);
-        mesh_.sides.push_back(ahead);
+        for (const auto place : {a, b, c}) *corners++ = number[place];
+        *sides++ = behind;
+        *sides++ = ahead;
     }
     for (unsigned left = disks.faces; left != 0; left &= left - 1) {
         mesh_.curves.push_back(number[kFirstFace + static_cast<std::size_t>(std::countr_zero(left))]);
         mesh_.curves.push_back(middle);
     }
 }
+
+template class Slab<std::uint8_t>;
+template class Slab<std::uint16_t>;
+template class Slab<std::uint32_t>;
 
 }  // namespace isocore::labels

@@ -32,11 +32,17 @@ class DiskCache {
     std::unordered_map<std::uint32_t, CellDisks> of_more_;
 };
 
+struct Sizes {
+    std::size_t vertices = 0, triangles = 0, curves = 0;
+};
+
 // What one slab has drawn, with vertices numbered from 0.
 struct SlabMesh : LabelMesh {
     std::size_t last_middles = 0;  // vertices in the middles of cells of its last layer
 };
 
+// Rank: an unsigned type that holds all ranks. The narrower, the more samples are surveyed at once.
+template <class Rank>
 class Slab {
   public:
     // `dims`: samples with the layer of background, which is two more along each axis.
@@ -46,7 +52,7 @@ class Slab {
     // them.
     template <class Load>
     SlabMesh draw(std::size_t first, std::size_t last, const Load& load) {
-        mesh_ = {};
+        make_room();
         load(first, low_.ranks.data());
         survey_plane(low_);
         number_plane(low_, first, first != 0);
@@ -59,18 +65,20 @@ class Slab {
             draw_layer(layer);
             std::swap(low_, high_);
         }
-        return std::move(mesh_);
+        return finished();
     }
 
   private:
     // Of each sample: is the edge to the next along x (bit 0) and along y (bit 1) crossed, and does the face between
     // them have a vertex (bit 2)? And the numbers of their vertices.
     struct Plane {
-        std::vector<std::uint32_t> ranks;
+        std::vector<Rank> ranks;
         std::vector<std::uint8_t> marks;
         std::array<std::vector<std::int32_t>, 3> numbers;  // along x, along y, in the face
     };
 
+    void make_room();
+    SlabMesh finished();
     void survey_plane(Plane& plane) const;
     void survey_layer();
     void number_plane(Plane& plane, std::size_t k, bool of_slab_before);
@@ -79,6 +87,9 @@ class Slab {
     void draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k);
     void write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle);
     std::int32_t add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element);
+    // Calls visit(place, i, j) for every sample of a plane that has a mark.
+    template <class Visit>
+    void for_each_marked(const std::vector<std::uint8_t>& marks, const Visit& visit) const;
 
     Dims dims_;
     std::size_t row_, plane_;  // samples of a row, of a plane
@@ -87,6 +98,7 @@ class Slab {
     std::array<std::vector<std::int32_t>, 3> upright_numbers_;
     DiskCache cache_;
     SlabMesh mesh_;
+    Sizes expected_;  // a little more than of the slab before
 };
 
 }  // namespace isocore::labels

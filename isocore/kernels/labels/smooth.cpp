@@ -11,65 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "common/large_pages.hpp"
 #include "common/parallel.hpp"
+#include "labels/curve_vertices.hpp"
+#include "labels/sliding.hpp"
 
 namespace isocore::labels {
 namespace {
 
 constexpr float kSmoothing = 0.5f, kUndoing = -0.53f;
-constexpr float kHalfWidth = 0.45f;   // how far from its element's middle a vertex may go
-constexpr float kSteepest = 0.3f;     // what a normal or tangent is taken to have along an axis at least
-constexpr int kSamePace = 8;          // steps for which normals are good enough, once the first have smoothed them
-constexpr std::size_t kBlock = 2048;  // vertices that are sorted by their number of neighbours, and moved by one thread
-
-// Four lanes, so that a vertex is one load and one sum: compilers that know vectors of their own are given one, because
-// they leave sums of arrays to one lane after the other.
-#if defined(__GNUC__)
-using Lanes = float __attribute__((vector_size(16)));
-#else
-struct alignas(16) Lanes {
-    std::array<float, 4> v{};
-
-    float& operator[](std::size_t n) { return v[n]; }
-    const float& operator[](std::size_t n) const { return v[n]; }
-    Lanes& operator+=(const Lanes& other) {
-        for (std::size_t n = 0; n < 4; ++n) v[n] += other.v[n];
-        return *this;
-    }
-    friend Lanes operator-(Lanes a, const Lanes& b) {
-        for (std::size_t n = 0; n < 4; ++n) a.v[n] -= b.v[n];
-        return a;
-    }
-    friend Lanes operator*(Lanes a, const Lanes& b) {
-        for (std::size_t n = 0; n < 4; ++n) a.v[n] *= b.v[n];
-        return a;
-    }
-    friend Lanes operator*(float factor, Lanes a) {
-        for (std::size_t n = 0; n < 4; ++n) a.v[n] *= factor;
-        return a;
-    }
-};
-#endif
-
-float dot(const Lanes& a, const Lanes& b) {
-    const Lanes product = a * b;
-    return product[0] + product[1] + product[2];
-}
-
-Lanes turned(const Lanes& a) { return Lanes{a[1], a[2], a[0], 0}; }
-
-Lanes cross(const Lanes& a, const Lanes& b) { return turned(a * turned(b) - turned(a) * b); }
-
-// A component of a direction, no nearer to 0 than kSteepest.
-float steep(float component) { return std::copysign(std::max(std::abs(component), kSteepest), component); }
-
-// Keeps a coordinate that moves inside an edge, face or cell between two samples inside of it. Vertices lie beyond -1.
-float kept(float from, float to) {
-    const float middle = static_cast<float>(static_cast<int>(from + 1.0f)) - 0.5f;
-    return std::clamp(to, middle - kHalfWidth, middle + kHalfWidth);
-}
-
-using Places = std::vector<Lanes>;
+constexpr int kSamePace = 8;  // steps for which normals are good enough, once the first have smoothed them
 
 // A mesh without its places.
 struct Shape {
@@ -123,36 +74,36 @@ class EdgeVertices {
         fill(shape, ends);
     }
 
-    // Moves all by one step, from their places in `from` to those in `to`.
-    void step(const Places& from, Places& to, float factor, bool new_normals, int threads) {
-        parallel_for(threads, blocks_.size() - 1, [&](std::size_t block) {
-            for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
-                if (new_normals) set_normals(runs_[n], from);
-                // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
-                switch (runs_[n].ring) {
-                    case 3:
-                        move<3>(runs_[n], from, to, factor);
-                        break;
-                    case 4:
-                        move<4>(runs_[n], from, to, factor);
-                        break;
-                    case 5:
-                        move<5>(runs_[n], from, to, factor);
-                        break;
-                    case 6:
-                        move<6>(runs_[n], from, to, factor);
-                        break;
-                    case 7:
-                        move<7>(runs_[n], from, to, factor);
-                        break;
-                    case 8:
-                        move<8>(runs_[n], from, to, factor);
-                        break;
-                    default:
-                        move<0>(runs_[n], from, to, factor);
-                }
+    std::size_t blocks() const { return blocks_.size() - 1; }
+
+    // Moves those of a block by one step, from their places in `from` to those in `to`.
+    void step(std::size_t block, const Places& from, Places& to, float factor, bool new_normals) {
+        for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
+            if (new_normals) set_normals(runs_[n], from);
+            // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
+            switch (runs_[n].ring) {
+                case 3:
+                    move<3>(runs_[n], from, to, factor);
+                    break;
+                case 4:
+                    move<4>(runs_[n], from, to, factor);
+                    break;
+                case 5:
+                    move<5>(runs_[n], from, to, factor);
+                    break;
+                case 6:
+                    move<6>(runs_[n], from, to, factor);
+                    break;
+                case 7:
+                    move<7>(runs_[n], from, to, factor);
+                    break;
+                case 8:
+                    move<8>(runs_[n], from, to, factor);
+                    break;
+                default:
+                    move<0>(runs_[n], from, to, factor);
             }
-        });
+        }
     }
 
   private:
@@ -180,9 +131,9 @@ class EdgeVertices {
         }
         blocks_.push_back(runs_.size());
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
-        normal_.resize(vertex_.size());
-        ring_.resize(first);
-        behind_.resize(first);
+        normal_ = large_array<Lanes>(vertex_.size());
+        ring_ = large_array<std::uint32_t>(first);
+        behind_ = large_array<std::uint32_t>(first);
     }
 
     // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
@@ -241,78 +192,15 @@ class EdgeVertices {
     std::vector<Run> runs_;
     std::vector<std::size_t> blocks_;     // where each block's runs begin
     Array<std::uint32_t> ring_, behind_;  // the next and the last corner of each triangle around a vertex
-    std::vector<Lanes> normal_;           // by its own component along the axis, which is at least kSteepest
+    Array<Lanes> normal_;                 // by its own component along the axis, which is at least kSteepest
 };
-
-// The vertices of the curves in which three labels and more meet: middles of faces, each between those of its two
-// cells, and middles of cells.
-class CurveVertices {
-  public:
-    explicit CurveVertices(const LabelMesh& mesh) {
-        if (mesh.curves.empty()) return;
-        std::vector<std::uint32_t> place(mesh.elements.size() + 1, 0);  // of each vertex: where its neighbours begin
-        const auto each = [&](const auto& visit) {
-            for (std::size_t n = 0; n < mesh.curves.size(); n += 2) {
-                const auto face = static_cast<std::uint32_t>(mesh.curves[n]),
-                           cell = static_cast<std::uint32_t>(mesh.curves[n + 1]);
-                visit(face, cell);
-                if (!(mesh.elements[cell] & kStays)) visit(cell, face);
-            }
-        };
-        each([&](std::uint32_t own, std::uint32_t) { ++place[own + 1]; });
-        for (std::uint32_t v = 0; v < mesh.elements.size(); ++v) {
-            if (place[v + 1] > 0) {
-                vertex_.push_back(v);
-                element_.push_back(mesh.elements[v]);
-                start_.push_back(place[v]);
-            }
-            place[v + 1] += place[v];
-        }
-        start_.push_back(place.back());
-        neighbours_.resize(place.back());
-        each([&](std::uint32_t own, std::uint32_t neighbour) { neighbours_[place[own]++] = neighbour; });
-    }
-
-    void step(const Places& from, Places& to, float factor, int threads) const {
-        parallel_for(threads, (vertex_.size() + kBlock - 1) / kBlock, [&](std::size_t block) {
-            const std::size_t end = std::min(vertex_.size(), (block + 1) * kBlock);
-            for (std::size_t n = block * kBlock; n < end; ++n) move(n, from, to, factor);
-        });
-    }
-
-  private:
-    void move(std::size_t n, const Places& from, Places& to, float factor) const {
-        const Lanes& own = from[vertex_[n]];
-        const std::size_t begin = start_[n], end = start_[n + 1];
-        Lanes sum{};
-        for (std::size_t m = begin; m < end; ++m) sum += from[neighbours_[m]];
-        Lanes pull = (1 / static_cast<float>(end - begin)) * sum - own;
-        if (element_[n] != kCell && end - begin == 2) {
-            // Along the curve, back to the face.
-            const std::size_t across = element_[n] == 6 ? 0 : element_[n] == 5 ? 1 : 2;
-            const Lanes along = from[neighbours_[begin + 1]] - from[neighbours_[begin]];
-            const float length = std::sqrt(dot(along, along));
-            if (length > 0) pull = pull - (pull[across] / (length * steep(along[across] / length))) * along;
-        }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (element_[n] >> axis & 1) to[vertex_[n]][axis] = kept(own[axis], own[axis] + factor * pull[axis]);
-        }
-    }
-
-    std::vector<std::uint32_t> vertex_, neighbours_;
-    std::vector<Element> element_;
-    std::vector<std::size_t> start_;
-};
-
-}  // namespace
-
-namespace {
 
 template <class Coordinate>
 Places places_of(const Coordinate* vertices, std::size_t count) {
-    Places places(count);
+    Places places = large_array<Lanes>(count);
     for (std::size_t n = 0; n < count; ++n) {
-        for (std::size_t axis = 0; axis < 3; ++axis) places[n][axis] = static_cast<float>(vertices[3 * n + axis]);
+        const auto at = [&](std::size_t axis) { return static_cast<float>(vertices[3 * n + axis]); };
+        places[n] = Lanes{at(0), at(1), at(2), 0};
     }
     return places;
 }
@@ -328,13 +216,17 @@ void write_back(const Places& places, std::span<const Element> elements, Coordin
 }
 
 // Moves `from` by so many rounds.
-void run(const Shape& shape, const CurveVertices& curves, int rounds, int threads, Places& from) {
-    Places to = from;
+void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Places& from) {
+    Places to = large_array<Lanes>(from.size());
+    std::copy(from.begin(), from.end(), to.begin());
     EdgeVertices edges(shape);
     for (int step = 0; step < rounds; ++step) {
         const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
-        edges.step(from, to, factor, step == 0 || step % kSamePace == kSamePace / 2, threads);
-        curves.step(from, to, factor, threads);
+        const bool anew = step == 0 || step % kSamePace == kSamePace / 2;
+        parallel_for(threads, edges.blocks(), [&](std::size_t block) {
+            edges.step(block, from, to, factor, anew);
+            curves.step(block, from, to, factor, anew);
+        });
         std::swap(from, to);
     }
 }
