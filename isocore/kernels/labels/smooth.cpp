@@ -29,10 +29,11 @@ struct Shape {
     bool may_be_open;
 };
 
-// Of an open ring of neighbours its last, which no triangle names first; of a closed one kNone. For every vertex.
+// Of an open ring of neighbours its last, which no triangle names first; of a closed one kNone. For every vertex, or
+// for none if all rings are closed.
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 std::vector<std::uint32_t> find_ends(const Shape& shape) {
-    if (!shape.may_be_open) return std::vector<std::uint32_t>(shape.elements.size(), kNone);
+    if (!shape.may_be_open) return {};
     // Around an open ring, sums of what comes first and of what comes last differ by its two ends.
     std::vector<std::int64_t> difference(shape.elements.size(), 0);
     const auto for_each_corner = [&](const auto& visit) {
@@ -64,7 +65,7 @@ std::vector<std::uint32_t> find_ends(const Shape& shape) {
 // their ring, block by block, so that loops over a ring have one length many times over.
 class EdgeVertices {
   public:
-    explicit EdgeVertices(const Shape& shape) {
+    explicit EdgeVertices(const Shape& shape) : triangles_(shape.triangles) {
         const std::vector<std::uint32_t> ends = find_ends(shape);
         std::vector<std::uint8_t> sizes(shape.elements.size(), 0);
         for (const std::int32_t corner : shape.triangles) ++sizes[static_cast<std::size_t>(corner)];
@@ -76,10 +77,18 @@ class EdgeVertices {
 
     std::size_t blocks() const { return blocks_.size() - 1; }
 
+    // Looks at all triangles for the normals of each thread's share of the vertices. A vertex' sum has one order,
+    // whoever adds it up.
+    void renew_normals(const Places& from, int threads) {
+        const auto shares = static_cast<std::size_t>(std::max(threads, 1));
+        const auto start = [&](std::size_t share) { return from.size() * share / shares; };
+        parallel_for(threads, shares, [&](std::size_t n) { sum_areas(from, start(n), start(n + 1)); });
+    }
+
     // Moves those of a block by one step, from their places in `from` to those in `to`.
     void step(std::size_t block, const Places& from, Places& to, float factor, bool new_normals) {
         for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
-            if (new_normals) set_normals(runs_[n], from);
+            if (new_normals) set_normals(runs_[n]);
             // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
             switch (runs_[n].ring) {
                 case 3:
@@ -131,9 +140,8 @@ class EdgeVertices {
         }
         blocks_.push_back(runs_.size());
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
-        normal_ = large_array<Lanes>(vertex_.size());
+        normal_ = large_array<Lanes>(mesh.elements.size());
         ring_ = large_array<std::uint32_t>(first);
-        behind_ = large_array<std::uint32_t>(first);
     }
 
     // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
@@ -147,27 +155,39 @@ class EdgeVertices {
         for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
             for (std::size_t n = 0; n < 3; ++n) {
                 std::uint32_t& at = place[static_cast<std::size_t>(mesh.triangles[t + n])];
-                if (at == kNone) continue;
-                ring_[at] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 1) % 3]);
-                behind_[at++] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 2) % 3]);
+                if (at != kNone) ring_[at++] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 1) % 3]);
             }
         }
-        for (const std::uint32_t v : vertex_) {
-            if (ends[v] != kNone) ring_[place[v]] = behind_[place[v]] = ends[v];
+        for (std::size_t n = 0; n < vertex_.size() && !ends.empty(); ++n) {
+            const std::uint32_t v = vertex_[n];
+            if (ends[v] != kNone) ring_[place[v]] = ends[v];
         }
     }
 
-    void set_normals(const Run& run, const Places& from) {
-        for (std::size_t n = run.begin; n < run.end; ++n) {
-            const Lanes& own = from[vertex_[n]];
-            const std::size_t begin = run.first + (n - run.begin) * run.ring;
-            Lanes sum{};
-            for (std::size_t m = begin; m < begin + run.ring; ++m) {
-                sum += cross(from[ring_[m]] - own, from[behind_[m]] - own);
+    // Twice the area vector of all triangles at a vertex, for the vertices begin to end - 1.
+    void sum_areas(const Places& from, std::size_t begin, std::size_t end) {
+        std::fill(normal_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  normal_.begin() + static_cast<std::ptrdiff_t>(end), Lanes{});
+        const std::size_t count = end - begin;
+        for (std::size_t t = 0; t < triangles_.size(); t += 3) {
+            const auto corner = [&](std::size_t n) { return static_cast<std::size_t>(triangles_[t + n]); };
+            const std::array<std::size_t, 3> corners{corner(0), corner(1), corner(2)};
+            const auto is_here = [&](std::size_t v) { return v - begin < count; };
+            if (!is_here(corners[0]) && !is_here(corners[1]) && !is_here(corners[2])) continue;
+            const Lanes& first = from[corners[0]];
+            const Lanes area = cross(from[corners[1]] - first, from[corners[2]] - first);
+            for (const std::size_t v : corners) {
+                if (is_here(v)) normal_[v] += area;
             }
-            const float length = std::sqrt(dot(sum, sum));
-            const float share = length > 0 ? 1 / (length * steep(sum[axis_[n]] / length)) : 0;
-            normal_[n] = share * sum;
+        }
+    }
+
+    void set_normals(const Run& run) {
+        for (std::size_t n = run.begin; n < run.end; ++n) {
+            Lanes& normal = normal_[vertex_[n]];
+            const float length = std::sqrt(dot(normal, normal));
+            const float share = length > 0 ? 1 / (length * steep(normal[axis_[n]] / length)) : 0;
+            normal = share * normal;
         }
     }
 
@@ -183,16 +203,17 @@ class EdgeVertices {
             for (std::size_t m = 0; m < ring; ++m) sum += from[neighbour[m]];
             const Lanes& own = from[vertex_[n]];
             const float at = own[axis_[n]];
-            to[vertex_[n]][axis_[n]] = kept(at, at + factor * dot(normal_[n], share * sum - own));
+            to[vertex_[n]][axis_[n]] = kept(at, at + factor * dot(normal_[vertex_[n]], share * sum - own));
         }
     }
 
+    std::span<const std::int32_t> triangles_;
     std::vector<std::uint32_t> vertex_;
     std::vector<std::uint8_t> axis_;
     std::vector<Run> runs_;
-    std::vector<std::size_t> blocks_;     // where each block's runs begin
-    Array<std::uint32_t> ring_, behind_;  // the next and the last corner of each triangle around a vertex
-    Array<Lanes> normal_;                 // by its own component along the axis, which is at least kSteepest
+    std::vector<std::size_t> blocks_;  // where each block's runs begin
+    Array<std::uint32_t> ring_;        // the next corner of each triangle around a vertex
+    Array<Lanes> normal_;  // of every vertex: by its own component along the axis, which is at least kSteepest
 };
 
 template <class Coordinate>
@@ -223,6 +244,7 @@ void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Plac
     for (int step = 0; step < rounds; ++step) {
         const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
         const bool anew = step == 0 || step % kSamePace == kSamePace / 2;
+        if (anew) edges.renew_normals(from, threads);
         parallel_for(threads, edges.blocks(), [&](std::size_t block) {
             edges.step(block, from, to, factor, anew);
             curves.step(block, from, to, factor, anew);
