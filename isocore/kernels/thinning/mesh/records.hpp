@@ -91,22 +91,42 @@ class Turning<mesh::Hex> {
     std::int32_t a_, b_;
 };
 
+// A walk around an edge of a cell, by way of one of the two faces there, cell by cell.
+template <class Cell>
+class EdgeWalk {
+  public:
+    EdgeWalk(const std::int32_t* records, std::size_t start, std::size_t edge, std::size_t face)
+        : records_(records), cell_(start), face_(face), turning_(records + kRecord<Cell> * start, edge, face) {}
+
+    std::size_t cell() const { return cell_; }
+    std::size_t face() const { return face_; }  // which the walk would go on through
+
+    // Goes on to the next cell; false at the boundary.
+    bool step() {
+        const std::int32_t twin = records_[kRecord<Cell> * cell_ + Cell::kCorners + face_];
+        if (twin < 0) return false;
+        cell_ = static_cast<std::size_t>(twin) / Cell::kFaces;
+        face_ = turning_.face_beyond(records_ + kRecord<Cell> * cell_, static_cast<std::size_t>(twin) % Cell::kFaces);
+        return true;
+    }
+
+  private:
+    const std::int32_t* records_;
+    std::size_t cell_, face_;
+    Turning<Cell> turning_;
+};
+
 // Walks around an edge of a cell from one of the two faces there, and calls visit(cell) for the cells it comes to until
 // that returns true or the walk is back at the start. Returns where it left: kFaces * cell + face at the boundary, -1
 // if it was stopped or went all the way round.
 template <class Cell, class Visit>
 std::int32_t walk_around(const std::int32_t* records, std::size_t start, std::size_t edge, std::size_t face,
                          const Visit& visit) {
-    const std::int32_t* record = records + kRecord<Cell> * start;
-    Turning<Cell> turning(record, edge, face);
-    for (std::size_t cell = start;;) {
-        const std::int32_t twin = record[Cell::kCorners + face];
-        if (twin < 0) return static_cast<std::int32_t>(Cell::kFaces * cell + face);
-        cell = static_cast<std::size_t>(twin) / Cell::kFaces;
-        if (cell == start || visit(cell)) return -1;
-        record = records + kRecord<Cell> * cell;
-        face = turning.face_beyond(record, static_cast<std::size_t>(twin) % Cell::kFaces);
+    EdgeWalk<Cell> walk(records, start, edge, face);
+    while (walk.step()) {
+        if (walk.cell() == start || visit(walk.cell())) return -1;
     }
+    return static_cast<std::int32_t>(Cell::kFaces * walk.cell() + walk.face());
 }
 
 }  // namespace isocore::thinning

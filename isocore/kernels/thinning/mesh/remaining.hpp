@@ -91,7 +91,7 @@ class Remaining {
             const auto edge = static_cast<std::size_t>(std::countr_zero(left));
             const auto& ends = Cell::kShape.ends[edge];
             if (!(corners >> ends[0] & corners >> ends[1] & 1)) continue;
-            edges |= Mask{around(cell, edge, 1) > 0} << edge;
+            edges |= Mask{is_used(cell, edge)} << edge;
         }
         out.edges = edges;
         out.corners = corners;
@@ -122,6 +122,23 @@ class Remaining {
             touching.survivor ^= static_cast<std::int32_t>(cell);
             if (--touching.count == 1) queue(touching.survivor, waiting);
         }
+    }
+
+    // Does another remaining cell touch the edge? Asked for in both directions at once, which need not wait for each
+    // other's memory: most edges are not used, and then all cells around them are looked at.
+    bool is_used(std::size_t cell, std::size_t edge) const {
+        const auto& faces = kFacesAtEdge<Cell>[edge];
+        const std::int32_t* records = gluing_.records.data();
+        EdgeWalk<Cell> one(records, cell, edge, faces[0]), other(records, cell, edge, faces[1]);
+        for (bool left = true, right = true; left || right;) {
+            left = left && one.step();
+            if (left && one.cell() == other.cell()) return false;
+            if (left && remains(one.cell())) return true;
+            right = right && other.step();
+            if (right && one.cell() == other.cell()) return false;
+            if (right && remains(other.cell())) return true;
+        }
+        return false;
     }
 
     // The other remaining cells around an edge, counted up to `most`; the last of them, where it is asked for.
