@@ -22,6 +22,14 @@ namespace {
 constexpr float kSmoothing = 0.5f, kUndoing = -0.53f;
 constexpr int kSamePace = 8;  // steps for which normals are good enough, once the first have smoothed them
 
+// task(begin, end) for a share of all vertices on each thread.
+template <class Task>
+void share_vertices(int threads, std::size_t vertices, const Task& task) {
+    const auto shares = static_cast<std::size_t>(std::max(threads, 1));
+    const auto start = [&](std::size_t share) { return vertices * share / shares; };
+    parallel_for(threads, shares, [&](std::size_t n) { task(start(n), start(n + 1)); });
+}
+
 // A mesh without its places.
 struct Shape {
     std::span<const Element> elements;
@@ -65,24 +73,21 @@ std::vector<std::uint32_t> find_ends(const Shape& shape) {
 // their ring, block by block, so that loops over a ring have one length many times over.
 class EdgeVertices {
   public:
-    explicit EdgeVertices(const Shape& shape) : triangles_(shape.triangles) {
+    EdgeVertices(const Shape& shape, int threads) : triangles_(shape.triangles) {
         const std::vector<std::uint32_t> ends = find_ends(shape);
         std::vector<std::uint8_t> sizes(shape.elements.size(), 0);
         for (const std::int32_t corner : shape.triangles) ++sizes[static_cast<std::size_t>(corner)];
         for (std::size_t v = 0; v < ends.size(); ++v)
             sizes[v] = static_cast<std::uint8_t>(sizes[v] + (ends[v] != kNone));
-        order(shape, sizes);
-        fill(shape, ends);
+        fill(order(shape, sizes), ends, threads);
     }
 
     std::size_t blocks() const { return blocks_.size() - 1; }
 
-    // Looks at all triangles for the normals of each thread's share of the vertices. A vertex' sum has one order,
-    // whoever adds it up.
+    // Each thread looks at all triangles for its share of the vertices. A vertex' sum has one order, whoever adds it
+    // up.
     void renew_normals(const Places& from, int threads) {
-        const auto shares = static_cast<std::size_t>(std::max(threads, 1));
-        const auto start = [&](std::size_t share) { return from.size() * share / shares; };
-        parallel_for(threads, shares, [&](std::size_t n) { sum_areas(from, start(n), start(n + 1)); });
+        share_vertices(threads, from.size(), [&](std::size_t begin, std::size_t end) { sum_areas(from, begin, end); });
     }
 
     // Moves those of a block by one step, from their places in `from` to those in `to`.
@@ -121,7 +126,8 @@ class EdgeVertices {
         std::size_t begin, end, first, ring;
     };
 
-    void order(const Shape& mesh, const std::vector<std::uint8_t>& sizes) {
+    // Returns where the ring of each vertex begins, or kNone.
+    std::vector<std::uint32_t> order(const Shape& mesh, const std::vector<std::uint8_t>& sizes) {
         std::size_t first = 0;
         std::array<std::vector<std::uint32_t>, 256> of_size;
         for (std::size_t begin = 0; begin < sizes.size(); begin += kBlock) {
@@ -142,26 +148,29 @@ class EdgeVertices {
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
         normal_ = large_array<Lanes>(mesh.elements.size());
         ring_ = large_array<std::uint32_t>(first);
-    }
-
-    // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
-    void fill(const Shape& mesh, const std::vector<std::uint32_t>& ends) {
         std::vector<std::uint32_t> place(mesh.elements.size(), kNone);
         for (const Run& run : runs_) {
             for (std::size_t n = run.begin; n < run.end; ++n) {
                 place[vertex_[n]] = static_cast<std::uint32_t>(run.first + (n - run.begin) * run.ring);
             }
         }
-        for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
-            for (std::size_t n = 0; n < 3; ++n) {
-                std::uint32_t& at = place[static_cast<std::size_t>(mesh.triangles[t + n])];
-                if (at != kNone) ring_[at++] = static_cast<std::uint32_t>(mesh.triangles[t + (n + 1) % 3]);
+        return place;
+    }
+
+    // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
+    void fill(std::vector<std::uint32_t> place, const std::vector<std::uint32_t>& ends, int threads) {
+        share_vertices(threads, place.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = 0; t < triangles_.size(); t += 3) {
+                for (std::size_t n = 0; n < 3; ++n) {
+                    const auto v = static_cast<std::size_t>(triangles_[t + n]);
+                    if (v - begin >= end - begin || place[v] == kNone) continue;
+                    ring_[place[v]++] = static_cast<std::uint32_t>(triangles_[t + (n + 1) % 3]);
+                }
             }
-        }
-        for (std::size_t n = 0; n < vertex_.size() && !ends.empty(); ++n) {
-            const std::uint32_t v = vertex_[n];
-            if (ends[v] != kNone) ring_[place[v]] = ends[v];
-        }
+            for (std::size_t v = begin; v < end && !ends.empty(); ++v) {
+                if (place[v] != kNone && ends[v] != kNone) ring_[place[v]] = ends[v];
+            }
+        });
     }
 
     // Twice the area vector of all triangles at a vertex, for the vertices begin to end - 1.
@@ -217,30 +226,36 @@ class EdgeVertices {
 };
 
 template <class Coordinate>
-Places places_of(const Coordinate* vertices, std::size_t count) {
+Places places_of(const Coordinate* vertices, std::size_t count, int threads) {
     Places places = large_array<Lanes>(count);
-    for (std::size_t n = 0; n < count; ++n) {
-        const auto at = [&](std::size_t axis) { return static_cast<float>(vertices[3 * n + axis]); };
-        places[n] = Lanes{at(0), at(1), at(2), 0};
-    }
+    share_vertices(threads, count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            const auto at = [&](std::size_t axis) { return static_cast<float>(vertices[3 * n + axis]); };
+            places[n] = Lanes{at(0), at(1), at(2), 0};
+        }
+    });
     return places;
 }
 
 // Only what has moved is written back: other coordinates keep all their digits.
 template <class Coordinate>
-void write_back(const Places& places, std::span<const Element> elements, Coordinate* vertices) {
-    for (std::size_t n = 0; n < places.size(); ++n) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (elements[n] >> axis & 1) vertices[3 * n + axis] = static_cast<Coordinate>(places[n][axis]);
+void write_back(const Places& places, std::span<const Element> elements, Coordinate* vertices, int threads) {
+    share_vertices(threads, places.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (elements[n] >> axis & 1) vertices[3 * n + axis] = static_cast<Coordinate>(places[n][axis]);
+            }
         }
-    }
+    });
 }
 
 // Moves `from` by so many rounds.
 void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Places& from) {
     Places to = large_array<Lanes>(from.size());
-    std::copy(from.begin(), from.end(), to.begin());
-    EdgeVertices edges(shape);
+    share_vertices(threads, from.size(), [&](std::size_t begin, std::size_t end) {
+        std::copy_n(from.data() + begin, end - begin, to.data() + begin);
+    });
+    EdgeVertices edges(shape, threads);
     for (int step = 0; step < rounds; ++step) {
         const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
         const bool anew = step == 0 || step % kSamePace == kSamePace / 2;
@@ -257,9 +272,9 @@ void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Plac
 
 void smooth(LabelMesh& mesh, int rounds, int threads) {
     if (rounds <= 0) return;
-    Places places = places_of(mesh.vertices.data(), mesh.elements.size());
+    Places places = places_of(mesh.vertices.data(), mesh.elements.size(), threads);
     run({mesh.elements, mesh.triangles, false}, CurveVertices(mesh), rounds, threads, places);
-    write_back(places, mesh.elements, mesh.vertices.data());
+    write_back(places, mesh.elements, mesh.vertices.data(), threads);
 }
 
 template <class Coordinate>
@@ -271,9 +286,9 @@ void smooth(Coordinate* vertices, std::size_t vertex_count, const std::int32_t* 
         const bool inside = vertices[n] != std::floor(vertices[n]);
         elements[n / 3] = static_cast<Element>(elements[n / 3] | (inside ? 1u << n % 3 : 0u));
     }
-    Places places = places_of(vertices, vertex_count);
+    Places places = places_of(vertices, vertex_count, threads);
     run({elements, {triangles, 3 * triangle_count}, true}, CurveVertices({}), rounds, threads, places);
-    write_back(places, elements, vertices);
+    write_back(places, elements, vertices, threads);
 }
 
 template void smooth(float*, std::size_t, const std::int32_t*, std::size_t, int, int);
