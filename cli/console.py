@@ -128,9 +128,10 @@ def say(text: str, **style: Any) -> None:
         click.echo(styled(line, **style) if style else line, err=True)
 
 
-def tell(text: str) -> None:
+def tell(text: str, **style: Any) -> None:
     """One line of results, on stdout, which gives a name's bytes back also where they are no text."""
-    click.echo(unarmed(printable(text, stray=True)))
+    line = unarmed(printable(text, stray=True))
+    click.echo(styled(line, **style) if style else line)
 
 
 def unarmed(text: str) -> str:
@@ -157,15 +158,19 @@ def styled(text: str, **style: Any) -> str:
     return text if os.environ.get("NO_COLOR") else click.style(text, **style)
 
 
-def say_table(batch: BatchReport) -> None:
-    """One line per output, in the width of the terminal, then their sums; red where something went wrong."""
+def say_table(batch: BatchReport, *, as_result: bool = False) -> None:
+    """One line per output, in the width of the terminal, then their sums; red where something went wrong.
+
+    as_result: on stdout, since it is what was asked for.
+    """
     from isocore.report.summary import HEADINGS, LEAVING, RIGHT, summary_rows, totals_line
 
     from .table import columns_of, set_table
 
+    put, stream = (tell, sys.stdout) if as_result else (say, sys.stderr)
     columns = columns_of(HEADINGS, RIGHT, LEAVING, shrinks=HEADINGS[0])
-    headings, *lines = set_table(columns, summary_rows(batch), screen_width(sys.stderr))
-    say(headings, bold=True)
+    headings, *lines = set_table(columns, summary_rows(batch), screen_width(stream))
+    put(headings, bold=True)
     for line, run in zip(lines, batch.outputs, strict=True):
-        say(line, **({"fg": "red"} if run.status == "failed" or run.missed else {}))
-    say(totals_line(batch))
+        put(line, **({"fg": "red"} if run.status == "failed" or run.missed else {}))
+    put(totals_line(batch))

@@ -22,6 +22,8 @@ from .convert_pictures import check_picture
 from .groups import GroupedCommand
 from .lists import listed
 from .options import default_threads
+from .streams import UNREAD
+from .warned import is_unread
 
 if TYPE_CHECKING:
     from isocore.batches.steps import StepChoice
@@ -60,7 +62,9 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
 
 
 def exit_code(batch: BatchReport) -> int:
-    """1 when some output failed, else 3 when one missed a requirement, else 0."""
+    """141 when nobody reads stdout any more, 1 when some output failed, 3 when one missed a requirement, else 0."""
+    if any(map(is_unread, batch.outputs)):
+        return UNREAD
     if any(run.status == "failed" for run in batch.outputs):
         return 1
     return 3 if any(run.missed for run in batch.outputs) else 0

@@ -13,7 +13,7 @@ import click
 from isocore.errors import IsocoreError, OptionError, one_line, printable
 
 from .names import speak_any_name
-from .streams import CANNOT_WRITE, open_closed_streams, settle_streams, working_folder_is_there
+from .streams import CANNOT_WRITE, UNREAD, open_closed_streams, settle_streams, working_folder_is_there
 
 #: Each command is a file of its name, imported only when it is called or described.
 COMMANDS = {
@@ -34,6 +34,7 @@ EXIT_CODES = {
     MISSED: "a requirement was missed",
     HUNG_UP: "hung up: the terminal or its connection was closed",
     INTERRUPTED: "interrupted",
+    UNREAD: "whoever read stdout has left, as head does",
     TERMINATED: "terminated",
 }
 
@@ -96,6 +97,7 @@ def main() -> None:
     open_closed_streams()
     _listen_to_signals()
     speak_any_name()
+    stdout = sys.stdout
     try:
         code = isocore.main(standalone_mode=False, prog_name="isocore")
         if not code:
@@ -112,6 +114,10 @@ def main() -> None:
     except (KeyboardInterrupt, click.exceptions.Abort):
         _say("isocore: interrupted")
         code = INTERRUPTED
+    except SystemExit:
+        if sys.stdout is stdout:
+            raise
+        sys.stdout, code = stdout, UNREAD  # a pipe broke: there click puts another in its place, and exits
     except Terminated as end:
         _say(f"isocore: {end}")
         code = end.code
@@ -133,9 +139,10 @@ def _failure(error: Exception) -> int:
     if isinstance(error, FileNotFoundError) and not working_folder_is_there():
         _say("isocore: the working folder is gone; change into one that is there")
         return WRONG_COMMAND
+    if isinstance(error, BrokenPipeError):
+        return UNREAD
     if isinstance(error, OSError) and error.errno in CANNOT_WRITE:  # an output file's error has its name by now
-        if not isinstance(error, BrokenPipeError):  # else whoever read our output has left
-            _say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
+        _say(f"isocore: stdout: cannot be written ({error.strerror or one_line(error)}); check where it leads")
         return FAILED
     if isinstance(error, IsocoreError):
         _say(f"isocore: {error}")

@@ -106,7 +106,7 @@ def report(
             say(f"isocore: {error}")
             unwritten = True
     if not targets:
-        say_table(batch)
+        say_table(batch, as_result=True)
     context.exit(1 if unwritten else 0)
 
 

@@ -20,7 +20,7 @@ from isocore.whole_file import whole_file
 
 from .console import Progress, say, say_table
 from .convert_options import ConvertOptions
-from .warned import Warned, said_at_once, warnings_of
+from .warned import Warned, is_unread, said_at_once, warnings_of
 
 #: A report that takes longer to save than this is left for so many times as long.
 _QUICK_SECONDS = 0.02
@@ -117,7 +117,7 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
 
         for line in github_annotations(batch):
             click.echo(line, err=True)
-    if not options.quiet:
+    if not options.quiet and not any(map(is_unread, batch.outputs)):
         say_table(batch)
     for line in unwritten:
         say(f"isocore: {line}")

@@ -16,6 +16,9 @@ CANNOT_WRITE = frozenset(
     for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF", "EPIPE", "EAGAIN", "EINVAL", "ENXIO", "ECONNRESET")
 )
 
+#: The code to exit with, without a word, where whoever read stdout has left: as of a program that SIGPIPE ended.
+UNREAD = 141
+
 
 def open_closed_streams() -> None:
     """Fill the places of closed streams, so that no output file takes one and gets what was meant for people.

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from isocore.errors import printable
+from isocore.errors import READER_LEFT, printable
 
 if TYPE_CHECKING:
     from isocore.report import RunReport
@@ -89,7 +89,12 @@ def _kind(warning: str, run: RunReport) -> str:
     return re.sub(_NUMBER, "0", warning, flags=re.IGNORECASE)
 
 
+def is_unread(run: RunReport) -> bool:
+    """Was it on its way through stdout when whoever read that left? Nothing is said of it: they know."""
+    return run.status == "failed" and run.output == "-" and run.message.endswith(READER_LEFT)
+
+
 def said_at_once(run: RunReport) -> list[str]:
     """What does not wait for the end: a failure, and every requirement that is missed."""
-    lines = [f"isocore: {printable(run.message)}"] if run.status == "failed" else []
+    lines = [f"isocore: {printable(run.message)}"] if run.status == "failed" and not is_unread(run) else []
     return lines + [f"isocore: {printable(run.output)}: misses {printable(miss)}" for miss in run.missed]

@@ -154,6 +154,10 @@ def reading(path: os.PathLike[str] | str) -> Iterator[None]:
         raise InputError(f"{name}: cannot be read ({what}); check {todo}") from error
 
 
+#: What became of an output that goes through a pipe, as into `head`.
+READER_LEFT = "whoever read it has left"
+
+
 @contextmanager
 def writing(path: os.PathLike[str] | str) -> Iterator[None]:
     """Translate a failure to write `path` into OutputError."""
@@ -162,6 +166,8 @@ def writing(path: os.PathLike[str] | str) -> Iterator[None]:
         yield
     except IsocoreError:
         raise
+    except BrokenPipeError as error:
+        raise OutputError(f"{name}: {READER_LEFT}") from error
     except OSError as error:
         reason = error.strerror or one_line(error)
         todo = "choose a shorter name" if error.errno == errno.ENAMETOOLONG else "check the folder and the free space"
@@ -170,6 +176,7 @@ def writing(path: os.PathLike[str] | str) -> Iterator[None]:
 
 __all__ = [
     "LONGEST",
+    "READER_LEFT",
     "FieldError",
     "InputError",
     "IsocoreError",

@@ -254,3 +254,50 @@ def test_a_limit_of_a_files_size_is_a_failed_row(here: Path) -> None:
     made = run(here, "convert", "a.nii", "b.nii", "-i", 50, "-d", "out", "-q", "-j", 2, patch=patch)
     assert made.returncode == 1 and made.stderr.count("(File too large)") == 2 == made.stderr.count("\n")
     assert list((here / "out").iterdir()) == []
+
+
+@pytest.fixture
+def unread() -> Any:
+    """A pipe that nobody reads from any more."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    yield writer
+    os.close(writer)
+
+
+@needs_posix
+@pytest.mark.parametrize("arguments", [*TO_STDOUT, ("report", "r.json"), ("completion", "bash"), ("bench", "a.nii")])
+def test_whoever_leaves_is_told_nothing(here: Path, unread: int, arguments: tuple[str, ...]) -> None:
+    """As `head` does; the exit code is that of a program that SIGPIPE ended."""
+    made = run(here, *arguments, stdout=unread)
+    assert made.returncode == 141
+    assert "roken" not in made.stderr and "fail" not in made.stderr and "Traceback" not in made.stderr
+
+
+@needs_posix
+def test_a_surface_that_nobody_reads_is_in_the_reports(here: Path, unread: int) -> None:
+    """They and the depfile are whole; nothing lies beside them, and nothing is said."""
+    before = set(here.iterdir())
+    more = ("--report", "s.json", "--report", "s.html", "--depfile", "deps")
+    made = run(here, "convert", "a.nii", "-i", 50, "-o", "-", "-f", "obj", *more, stdout=unread)
+    assert made.returncode == 141 and made.stderr == ""
+    row = json.loads((here / "s.json").read_text())["outputs"][0]
+    assert row["status"] == "failed" and row["message"] == "a.nii: stdout: whoever read it has left"
+    assert {path.name for path in set(here.iterdir()) - before} <= {"s.json", "s.html", "s.json.copies", "deps"}
+
+
+@needs_posix
+def test_what_was_asked_for_besides_is_done_when_nobody_reads(here: Path, unread: int) -> None:
+    """Surfaces and reports of a batch whose JSON goes to `head`."""
+    (here / "b.nii").write_bytes((here / "a.nii").read_bytes())
+    arguments = ("convert", "a.nii", "b.nii", "-i", 50, "-d", "out", "--json", "-q", "--report", "s.json", "-j", 2)
+    assert run(here, *arguments, stdout=unread).returncode == 141
+    assert json.loads((here / "s.json").read_text())["totals"]["done"] == 2
+    assert len(list((here / "out").iterdir())) == 2
+
+
+@needs_posix
+def test_a_table_of_a_report_is_a_result(here: Path) -> None:
+    """On stdout, for less and grep; stderr is for what went wrong."""
+    made = run(here, "report", "r.json")
+    assert made.returncode == 0 and made.stderr == "" and "a.ply" in made.stdout and "1 done" in made.stdout
