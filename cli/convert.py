@@ -22,13 +22,10 @@ from .convert_pictures import check_picture
 from .groups import GroupedCommand
 from .lists import listed
 from .options import default_threads
-from .streams import UNREAD
-from .warned import is_unread
 
 if TYPE_CHECKING:
     from isocore.batches.steps import StepChoice
     from isocore.job import Job
-    from isocore.report import BatchReport
 
 
 @click.command(cls=GroupedCommand, short_help="Volumes and meshes to surfaces.")
@@ -51,7 +48,7 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
         for line in plan_lines(jobs):
             tell(line)
         return
-    from .running import run_and_report
+    from .running import exit_code, run_and_report
 
     batch, all_written = run_and_report(jobs, options, start)
     if options.as_json:
@@ -59,15 +56,6 @@ def convert(context: click.Context, options: ConvertOptions) -> None:
 
         click.echo(render_json(batch), nl=False)
     context.exit(exit_code(batch) if all_written else 1)
-
-
-def exit_code(batch: BatchReport) -> int:
-    """141 when nobody reads stdout any more, 1 when some output failed, 3 when one missed a requirement, else 0."""
-    if any(map(is_unread, batch.outputs)):
-        return UNREAD
-    if any(run.status == "failed" for run in batch.outputs):
-        return 1
-    return 3 if any(run.missed for run in batch.outputs) else 0
 
 
 def planned_jobs(options: ConvertOptions) -> list[Job]:

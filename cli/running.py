@@ -20,6 +20,7 @@ from isocore.whole_file import whole_file
 
 from .console import Progress, say, say_table
 from .convert_options import ConvertOptions
+from .streams import UNREAD
 from .warned import Warned, is_unread, said_at_once, warnings_of
 
 #: A report that takes longer to save than this is left for so many times as long.
@@ -130,6 +131,15 @@ def _save_copies(batch: BatchReport, path: Path) -> None:
 
     if has_copies_beside(path):
         save_copies(batch, path)
+
+
+def exit_code(batch: BatchReport) -> int:
+    """141 when nobody reads stdout any more, 1 when some output failed, 3 when one missed a requirement, else 0."""
+    if any(map(is_unread, batch.outputs)):
+        return UNREAD
+    if any(run.status == "failed" for run in batch.outputs):
+        return 1
+    return 3 if any(run.missed for run in batch.outputs) else 0
 
 
 def _write_depfile(jobs: list[Job], path: Path | None) -> list[str]:
