@@ -34,6 +34,7 @@ PROBE = """
 addEventListener("load", () => setTimeout(() => {
   const files = () => [...document.querySelectorAll("tbody tr td.file")].map((cell) => cell.textContent);
   const found = { errors: window.errors, rows: files().length };
+  found.isovalues = [...document.querySelectorAll("tbody tr")].map((row) => row.children[3].textContent);
   found.attention = !document.querySelector("#attention").hidden;
   const canvas = document.querySelector("canvas");
   const gl = canvas.getContext("webgl2");
@@ -144,6 +145,22 @@ def test_the_viewer_stands_above_or_beside_the_table_at_every_width(tmp_path: Pa
     assert found["darker"] < 0.98 and found["fainter"] < 0.6
     assert re.search(r"volume [\d,.]+ mm³", found["facts"]) and "closed; 1 piece; manifold" in found["facts"]
     assert found["link"].startswith("ball_") and (tmp_path / found["link"]).is_file()
+
+
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine (Debian: apt-get install chromium)")
+@pytest.mark.parametrize(
+    ("isovalues", "shown"),
+    [((30, 40.0552763819095), ["30", "40.0553"]), ((30.00000012, 30.00000034), ["30.0000001", "30.0000003"])],
+)
+def test_isovalues_have_the_digits_that_tell_them_apart(
+    tmp_path: Path, isovalues: tuple[float, ...], shown: list[str]
+) -> None:
+    """Six, or more where two of them are closer."""
+    source = write_nifti(tmp_path / "ball.nii.gz", ball(24, radius=8))
+    targets = tuple(Target(str(value), tmp_path / f"{n}.ply") for n, value in enumerate(isovalues))
+    save_report(BatchReport(tuple(convert(Job(source=source, targets=targets)))), tmp_path / "run.html")
+    found = looked_at(tmp_path / "run.html")
+    assert found["errors"] == [] and found["isovalues"] == shown
 
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine (Debian: apt-get install chromium)")

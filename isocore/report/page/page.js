@@ -10,6 +10,13 @@ const short = (digits) => (value) => (isNumber(value) ? value.toFixed(digits) : 
 const rounded = (digits) => (value) => (isNumber(value) ? String(Number(value.toPrecision(digits))) : value ?? "");
 const plain = rounded(9);
 const precise = rounded(15); // of samples and isovalues, which may differ in their last digits only
+// As few digits as tell these numbers apart, but six where there are as many.
+function apart(numbers) {
+  const kinds = (digits) => new Set(numbers.map(rounded(digits))).size;
+  let digits = 6;
+  while (digits < 15 && kinds(digits) < kinds(15)) ++digits;
+  return rounded(digits);
+}
 const fileName = (path) => path.split(/[\\/]/).pop();
 const isEmpty = (run) => run.surface?.triangles === 0;
 const closed = (run) =>
@@ -32,7 +39,7 @@ function breakable(cell) {
 const allColumns = [
   { title: "file", value: (run) => fileName(run.output === "-" ? run.source : run.output), show: String },
   { title: "status", value: (run) => (run.missed.length ? run.status + ", missed" : run.status), show: String },
-  { title: "isovalue", value: (run) => run.isovalue, show: precise, number: true },
+  { title: "isovalue", value: (run) => run.isovalue, show: apart(runs.map((run) => run.isovalue).filter(isNumber)), number: true },
   { title: "triangles", value: (run) => dig(run, "surface.triangles"), show: whole, number: true },
   { title: "reference", value: (run) => dig(run, "reference.triangles"), show: whole, number: true },
   { title: "ratio", value: (run) => dig(run, "ratio.triangles"), show: short(2), number: true },
