@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -115,6 +116,14 @@ def test_a_build_that_cannot_run_is_refused(installed: list[str], runs_v3: bool,
     """By name and with the way out, before any of its code is loaded."""
     with pytest.raises(ImportError, match=message):
         _kernels._choose(installed, runs_v3, asked)
+
+
+def test_sources_without_kernels_say_so(tmp_path: Path) -> None:
+    """As in a clone, where Python finds the sources before what was installed from them."""
+    shutil.copytree(Path(isocore.__file__).parent, tmp_path / "isocore", ignore=shutil.ignore_patterns("*.so", "*.pyd"))
+    command = [sys.executable, "-S", "-c", "import isocore._kernels"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "are isocore's sources, without compiled kernels; start Python else" in done.stderr
 
 
 def test_the_version_says_which_kernels_run() -> None:
