@@ -2,7 +2,8 @@
 
 One mesh is written by VTK in every encoding; ours and VTK's reader take turns, by this process's processor time, and
 the figures are medians. Then many small files go through one command, and through a loop of VTK's reader, contour and
-writer in a process of its own.
+writer in a process of its own. Exit code 1 where an encoding takes more than twice VTK's time, joining more than a
+third of ours, or the files more than 0.8 of the loop's.
 """
 
 from __future__ import annotations
@@ -45,6 +46,9 @@ for source in sys.argv[2:]:
 """
 
 
+MOST = {"encoding": 2.0, "joining": 1 / 3, "files": 0.8}
+
+
 def write(grid: Any, path: Path, mode: str, compressor: str | None, bits: int) -> None:
     """One file in one encoding."""
     import vtk
@@ -80,9 +84,14 @@ def medians(runs: list[Callable[[], Any]], rounds: int) -> list[float]:
     return [statistics.median(seconds) for seconds in found]
 
 
-def encodings(folder: Path, mesh: CellMesh, rounds: int) -> None:
-    """The table of encodings."""
-    grid = vtk_grid(mesh)
+def missed(what: str, figure: float, most: float) -> list[str]:
+    """A line where it is more."""
+    return [f"{what}: {figure:.2f}, must be {most:.2f}"] if figure > most else []
+
+
+def encodings(folder: Path, mesh: CellMesh, rounds: int) -> list[str]:
+    """The table of encodings; what of it is missed."""
+    grid, found = vtk_grid(mesh), []
     print(f"{len(mesh.tets):,} tetrahedra{'':26}{'ours ms':>9}{'VTK ms':>9}{'ratio':>7}{'joining':>9}")
     for mode in MODES:
         for label, compressor in COMPRESSORS.items():
@@ -93,9 +102,11 @@ def encodings(folder: Path, mesh: CellMesh, rounds: int) -> None:
                     continue
                 path = folder / "mesh.vtu"
                 write(grid, path, mode, compressor, bits)
-                row(f"{mode}, {label}, {bits} bits", path, rounds)
+                name = f"{mode}, {label}, {bits} bits"
+                found += missed(name, row(name, path, rounds)[0], MOST["encoding"])
     write(vtk_grid(apart(mesh)), path, "appended raw", None, 32)
-    row("the same, each cell with points of its own", path, rounds)
+    name = "the same, each cell with points of its own"
+    return found + missed(f"{name}, joining", row(name, path, rounds)[1], MOST["joining"])
 
 
 def apart(mesh: CellMesh) -> CellMesh:
@@ -104,15 +115,16 @@ def apart(mesh: CellMesh) -> CellMesh:
     return CellMesh(mesh.points[mesh.tets.ravel()], own, mesh.hexes, mesh.values[mesh.tets.ravel()])
 
 
-def row(name: str, path: Path, rounds: int) -> None:
-    """Ours, VTK's, and ours without joining points."""
+def row(name: str, path: Path, rounds: int) -> tuple[float, float]:
+    """Ours, VTK's, and ours without joining points; our share of VTK's time, and that of joining in ours."""
     alone = ReadOptions(mesh=MeshOptions(keep_duplicates=True))
     ours, theirs, unjoined = medians([lambda: read(path), lambda: vtk_read(path), lambda: read(path, alone)], rounds)
-    joining = f"{100 * (ours - unjoined) / ours:8.0f}%"
-    print(f"{name:44}{1e3 * ours:9.1f}{1e3 * theirs:9.1f}{ours / theirs:7.2f}{joining}", flush=True)
+    joining = (ours - unjoined) / ours
+    print(f"{name:44}{1e3 * ours:9.1f}{1e3 * theirs:9.1f}{ours / theirs:7.2f}{100 * joining:8.0f}%", flush=True)
+    return ours / theirs, joining
 
 
-def many_files(folder: Path, files: int, rounds: int) -> None:
+def many_files(folder: Path, files: int, rounds: int) -> list[str]:
     """One command against VTK's loop, both on one thread each, by the processor time of the child.
 
     The first round, which compiles the Python modules as an installation does, does not count.
@@ -139,9 +151,12 @@ def many_files(folder: Path, files: int, rounds: int) -> None:
             spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
             seconds[name].append((time.perf_counter() - start, spent))
     print(f"{files} files of {len(mesh.tets):,} tetrahedra, one isovalue, PLY")
+    processor = []
     for name, each in seconds.items():
         wall, spent = (statistics.median(column) for column in zip(*each[1:], strict=True))
+        processor.append(spent)
         print(f"{name:18} {wall:7.2f} s, {spent:7.2f} s of the processor")
+    return missed("many files", processor[0] / processor[1], MOST["files"])
 
 
 def main() -> None:
@@ -151,11 +166,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--files", type=int, default=60)
     asked = parser.parse_args()
+    found: list[str] = []
     with tempfile.TemporaryDirectory() as folder:
         if asked.bricks:
-            encodings(Path(folder), smooth_mesh(asked.bricks), asked.rounds)
+            found += encodings(Path(folder), smooth_mesh(asked.bricks), asked.rounds)
         if asked.files:
-            many_files(Path(folder), asked.files, asked.rounds)
+            found += many_files(Path(folder), asked.files, asked.rounds)
+    if found:
+        sys.exit("\n".join(found))
 
 
 if __name__ == "__main__":
