@@ -50,10 +50,17 @@ bool Backward<Real>::are_near(const Star& star, const Facets& facets, float limi
     Box box = Box::around(face(1), margin);
     for (std::size_t n = 2; n + 1 < star.count; ++n) box.add(Box::around(face(n), margin));
     near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box, star.sheet);
-    distances_.clear();
+    // A star is refused for one face, so those come first that leave most of the vertex's height.
+    order_.clear();
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
+        const float height = std::abs(dot(facets.frame(n - 1).h, star.place(0)));
+        order_.push_back({height > 0 ? -height : 0.0f, n});  // that of a face without area is no number
+    }
+    std::sort(order_.begin(), order_.end());
+    distances_.resize(star.face_count());
+    for (const auto& [height, n] : order_) {
         if (!is_near(face(n), facets.frame(n - 1))) return false;
-        distances_.push_back(distance_);
+        distances_[n - 1] = distance_;
     }
     return true;
 }
@@ -131,12 +138,12 @@ bool Backward<Real>::is_near_by_pieces(const Corners& t) {
                     y = static_cast<float>(j) / static_cast<float>(steps);
         return Spot{t[0][0] + x * ab[0] + y * ac[0], t[0][1] + x * ab[1] + y * ac[1], t[0][2] + x * ab[2] + y * ac[2]};
     };
-    lattice_.clear();
+    lattice_.resize((steps + 1) * (steps + 2) / 2);
+    words_ = (facets_.size() + 63) / 64;
     halvings_ = kMostHalvings;
-    for (std::size_t j = 0; j <= steps; ++j) {
+    for (std::size_t j = 0, n = 0; j <= steps; ++j) {
         for (std::size_t i = 0; i + j <= steps; ++i) {
-            const Within found = lattice_.emplace_back(within(point(i, j)));
-            if (is_empty(found)) return false;
+            if (!find_within(point(i, j), lattice_[n++])) return false;
         }
     }
     std::size_t row = 0;
@@ -146,7 +153,7 @@ bool Backward<Real>::is_near_by_pieces(const Corners& t) {
             const auto holds = [&](std::array<std::size_t, 2> a, std::array<std::size_t, 2> b,
                                    std::array<std::size_t, 2> c) {
                 const auto at = [&](const std::array<std::size_t, 2>& p) {
-                    return lattice_[(p[1] == j ? row : next) + p[0]];
+                    return &lattice_[(p[1] == j ? row : next) + p[0]];
                 };
                 return is_near_by_halves({point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])},
                                          {at(a), at(b), at(c)}, kHalvings);
@@ -160,41 +167,38 @@ bool Backward<Real>::is_near_by_pieces(const Corners& t) {
 }
 
 template <class Real>
-bool Backward<Real>::is_near_by_halves(const Corners& t, const std::array<Within, 3>& within_of, int depth) {
-    for (std::size_t word = 0; word < within_of[0].size(); ++word) {
-        if (within_of[0][word] & within_of[1][word] & within_of[2][word]) return true;
+bool Backward<Real>::is_near_by_halves(const Corners& t, const OfCorners& within, int depth) {
+    for (std::size_t word = 0; word < words_; ++word) {
+        if ((*within[0])[word] & (*within[1])[word] & (*within[2])[word]) return true;
     }
-    if (depth == 0) return false;
-    const auto parts = quarters(t, between);
-    if (halvings_ == 0) return false;
+    if (depth == 0 || halvings_ == 0) return false;
     --halvings_;
-    const Within ab = within(parts[3][0]), bc = within(parts[3][1]), ca = within(parts[3][2]);
-    if (is_empty(ab) || is_empty(bc) || is_empty(ca)) return false;
-    const std::array<std::array<Within, 3>, 4> of_parts{std::array{within_of[0], ab, ca},
-                                                        std::array{ab, within_of[1], bc},
-                                                        std::array{ca, bc, within_of[2]}, std::array{ab, bc, ca}};
+    const auto parts = quarters(t, between);
+    Within ab, bc, ca;
+    if (!find_within(parts[3][0], ab) || !find_within(parts[3][1], bc) || !find_within(parts[3][2], ca)) return false;
+    const std::array<OfCorners, 4> of_parts{OfCorners{within[0], &ab, &ca}, OfCorners{&ab, within[1], &bc},
+                                            OfCorners{&ca, &bc, within[2]}, OfCorners{&ab, &bc, &ca}};
     for (std::size_t n = 0; n < 4; ++n) {
         if (!is_near_by_halves(parts[n], of_parts[n], depth - 1)) return false;
     }
     return true;
 }
 
+// Of which facets does a point lie within the limit? False if there are none.
 template <class Real>
-bool Backward<Real>::is_empty(const Within& set) {
-    return std::all_of(set.begin(), set.end(), [](std::uint64_t word) { return word == 0; });
-}
-
-template <class Real>
-auto Backward<Real>::within(const Spot& point) const -> Within {
+bool Backward<Real>::find_within(const Spot& point, Within& out) const {
     const Vector<Floats> at{point[0], point[1], point[2]};
     const Floats most(limit_ * limit_);
-    Within out{};
-    for (std::size_t first = 0; first < facets_.size(); first += kLanes) {
-        const std::size_t count = std::min(kLanes, facets_.size() - first);
-        const std::uint64_t bits = (facets_.from_point(first, at) <= most).bits() & ((1u << count) - 1);
-        out[first / 64] |= bits << first % 64;
+    std::uint64_t any = 0;
+    for (std::size_t word = 0; word < words_; ++word) {
+        const std::size_t begin = 64 * word, count = std::min<std::size_t>(facets_.size() - begin, 64);
+        std::uint64_t bits = 0;
+        for (std::size_t n = 0; n < count; n += kLanes)
+            bits |= static_cast<std::uint64_t>((facets_.from_point(begin + n, at) <= most).bits()) << n;
+        out[word] = bits & ~std::uint64_t{0} >> (64 - count);  // not of those past the end
+        any |= out[word];
     }
-    return out;
+    return any != 0;
 }
 
 template class Backward<float>;

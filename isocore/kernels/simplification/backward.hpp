@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "common/facets.hpp"
@@ -34,17 +35,17 @@ class Backward {
 
   private:
     using Corners = std::array<Spot, 3>;
-    // A bit for each triangle of the patch: does a point lie within the limit of it?
+    // A bit for each triangle of the patch: does a point lie within the limit of it? Only the first words_ are used.
     static constexpr std::size_t kMostTriangles = Facets::kRoom;
     using Within = std::array<std::uint64_t, kMostTriangles / 64>;
+    using OfCorners = std::array<const Within*, 3>;
 
     bool is_near(const Corners& triangle, const Facets::Frame& frame);
     bool is_near(const Corners& triangle, std::size_t depth);
     void take_facets(const Corners& triangle, Patch& near);
     bool is_near_by_pieces(const Corners& triangle);
-    bool is_near_by_halves(const Corners& triangle, const std::array<Within, 3>& within, int depth);
-    Within within(const Spot& point) const;
-    static bool is_empty(const Within& set);
+    bool is_near_by_halves(const Corners& triangle, const OfCorners& within, int depth);
+    bool find_within(const Spot& point, Within& out) const;
 
     const Reference<Real>& reference_;
     const Mesh<Real>& mesh_;
@@ -53,10 +54,12 @@ class Backward {
     Patch near_star_;
     std::array<Patch, 4> near_;  // by depth
     std::vector<float> distances_;
-    float distance_ = 0;  // so far, of the triangle that is looked at
+    std::vector<std::pair<float, std::size_t>> order_;  // of faces: how likely they are to be far, and which
+    float distance_ = 0;                                // so far, of the triangle that is looked at
     Column column_;
     bool is_plumbed_ = true;  // are places seen from the triangle that is looked at?
     Facets frame_, facets_;
+    std::size_t words_ = 0;
     std::vector<Within> lattice_;
     int halvings_ = 0;  // that may still be done
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/prefetch.hpp"
 
@@ -180,7 +181,7 @@ void Contraction<Real>::commit() {
     for (std::size_t p = 0; p < count_; ++p) take_out(parts_[p]);
     mesh_.quadrics[target].add(mesh_.quadrics[centre],
                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
-    for (std::size_t p = 0; p < count_; ++p) enter_faces(parts_[p]);
+    for (std::size_t p = 0; p < count_; ++p) draw_faces(parts_[p]);
     for (std::size_t p = 0; p < count_; ++p) join_ring(parts_[p].star);
     mesh_.vertices[centre].count = 0;
     mesh_.vertices[centre].movable = false;
@@ -194,31 +195,30 @@ void Contraction<Real>::commit() {
 template <class Real>
 void Contraction<Real>::take_out(Part& part) {
     const Star& star = part.star;
-    for (std::size_t n = 0; n < star.count; ++n) {
-        if (star.triangles[n] == kNone) continue;
+    for (const std::int32_t triangle : {star.triangles[0], star.triangles[star.count - 1]}) {
+        if (triangle == kNone) continue;
         cubes_.clear();
-        grid_.cubes_of(mesh_, star.triangles[n], cubes_);
-        grid_.remove(star.triangles[n], cubes_.data(), cubes_.size(), spare_);
+        grid_.cubes_of(mesh_, triangle, cubes_);
+        grid_.remove(triangle, cubes_, spare_);
     }
     part.witnesses.hand_over(mesh_, star);
 }
 
 template <class Real>
-void Contraction<Real>::enter_faces(const Part& part) {
+void Contraction<Real>::draw_faces(const Part& part) {
     const Star& star = part.star;
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
         const std::int32_t number = star.triangles[n];
         Triangle& triangle = mesh_.triangles[static_cast<std::size_t>(number)];
+        cubes_.clear();
+        grid_.cubes_of(mesh_, number, cubes_);
+        const std::size_t before = cubes_.size();
         triangle.corners[triangle.index_of(star.centre)] = star.target();
         mesh_.proved[static_cast<std::size_t>(number)] = part.distances[n];
-        if (count_ == 1) {
-            const std::size_t first = crossings_.first_cube(n);
-            grid_.enter(number, crossings_.cubes_of_faces().data() + first, crossings_.end_cube(n) - first, spare_);
-        } else {
-            cubes_.clear();
-            grid_.cubes_of(mesh_, number, cubes_);
-            grid_.enter(number, cubes_.data(), cubes_.size(), spare_);
-        }
+        if (count_ > 1) grid_.cubes_of(mesh_, number, cubes_);
+        const std::span<const std::int32_t> cubes(cubes_);
+        grid_.move(number, cubes.first(before), count_ > 1 ? cubes.subspan(before) : crossings_.cubes_of_face(n),
+                   spare_);
     }
 }
 

@@ -64,7 +64,7 @@ class Contraction {
     float limit_here(const Star& star) const;
     void commit();
     void take_out(Part& part);
-    void enter_faces(const Part& part);
+    void draw_faces(const Part& part);
     void join_ring(const Star& star);
     void retire(const Star& star);
     void drop_from_ring(std::int32_t vertex, std::int32_t triangle);

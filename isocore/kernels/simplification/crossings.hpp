@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/lanes.hpp"
@@ -49,9 +50,9 @@ class Crossings {
     bool are_there(const Star& star, const Facets& facets, const std::vector<const Star*>& others);
 
     // The cubes that face n of the last star touches.
-    const std::vector<std::int32_t>& cubes_of_faces() const { return cubes_; }
-    std::size_t first_cube(std::size_t face) const { return starts_[face - 1]; }
-    std::size_t end_cube(std::size_t face) const { return starts_[face]; }
+    std::span<const std::int32_t> cubes_of_face(std::size_t face) const {
+        return std::span(cubes_).subspan(starts_[face - 1], starts_[face] - starts_[face - 1]);
+    }
 
   private:
     // Triangles that may meet some faces, coordinate by coordinate, so that eight are looked at together.

@@ -22,6 +22,23 @@ constexpr float kFirstLimit = 1.0f / 16;  // cells, where a number of triangles 
 constexpr std::array<std::array<std::int32_t, 3>, kPhases> kShifts{std::array{0, 0, 0}, std::array{2, 2, 2},
                                                                    std::array{1, 3, 1}, std::array{3, 1, 3}};
 
+// Two that know nothing of each other, and are built at the same time.
+template <class Real>
+struct Surfaces {
+    std::unique_ptr<Reference<Real>> reference;
+    std::unique_ptr<Mesh<Real>> mesh;
+
+    Surfaces(const MeshArrays<Real>& input, const MeshArrays<Real>& stands_for, const Cells& cells,
+             const Options& options) {
+        parallel_for(options.threads, 2, [&](std::size_t n) {
+            if (n == 0)
+                mesh = std::make_unique<Mesh<Real>>(input, cells, options.stretch, options.rounding);
+            else
+                reference = std::make_unique<Reference<Real>>(stands_for, cells);
+        });
+    }
+};
+
 template <class Real>
 class Simplification {
   public:
@@ -30,12 +47,12 @@ class Simplification {
           options_(options),
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
-          reference_(reference, cells_),
-          mesh_(input, cells_, options.stretch, options.rounding),
+          surfaces_(input, reference, cells_, options),
+          mesh_(*surfaces_.mesh),
           grid_(cells_, options.rounding),
           costs_(mesh_.vertex_count()) {
         for (int n = 0; n < std::max(options.threads, 1); ++n)
-            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, reference_, grid_, limit_));
+            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, *surfaces_.reference, grid_, limit_));
         for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options.max_error));
         enter_triangles();
         find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
@@ -107,8 +124,18 @@ class Simplification {
         for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
             cubes.clear();
             grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
-            grid_.enter(static_cast<std::int32_t>(t), cubes.data(), cubes.size(), spare);
+            grid_.enter(static_cast<std::int32_t>(t), cubes, spare);
         }
+    }
+
+    // visit(vertex) of all, by all threads.
+    template <class Visit>
+    void each_vertex(const Visit& visit) const {
+        constexpr std::size_t kAtOnce = 16384;
+        const std::size_t count = mesh_.vertex_count();
+        parallel_for(options_.threads, (count + kAtOnce - 1) / kAtOnce, [&](std::size_t task) {
+            for (std::size_t v = task * kAtOnce; v < std::min(count, (task + 1) * kAtOnce); ++v) visit(v);
+        });
     }
 
     // The vertices that may move, by the box that they lie in with all their neighbours.
@@ -117,17 +144,19 @@ class Simplification {
         for (std::size_t a = 0; a < 3; ++a) dims[a] = cells_.dims[a] / kBoxCells + 2;
         std::vector<std::vector<std::int32_t>> boxes(dims[0] * dims[1] * dims[2]);
         std::vector<std::uint32_t> box_of(mesh_.vertex_count());
-        for (std::size_t v = 0; v < box_of.size(); ++v) {
+        each_vertex([&](std::size_t v) {
             const Cell cell = cells_.at(mesh_.places[v].at.data());
             const auto box = [&](std::size_t a) {
                 return static_cast<std::size_t>((cell[a] + shift[a] * kBoxCells / 4) / kBoxCells);
             };
             box_of[v] = static_cast<std::uint32_t>(box(0) + dims[0] * (box(1) + dims[1] * box(2)));
-        }
-        for (std::size_t v = 0; v < box_of.size(); ++v) {
+        });
+        each_vertex([&](std::size_t v) {
             Vertex& vertex = mesh_.vertices[v];
             vertex.movable = vertex.may_move() && has_ring_in_box(vertex, box_of[v], box_of);
-            if (vertex.movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
+        });
+        for (std::size_t v = 0; v < box_of.size(); ++v) {
+            if (mesh_.vertices[v].movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
         }
         std::erase_if(boxes, [](const auto& box) { return box.empty(); });
         // The longest first, so that no thread is left with a long one at the end.
@@ -206,8 +235,8 @@ class Simplification {
     const Options& options_;
     Cells cells_;
     float limit_;
-    Reference<Real> reference_;
-    Mesh<Real> mesh_;
+    Surfaces<Real> surfaces_;
+    Mesh<Real>& mesh_;
     TriangleGrid grid_;
     std::vector<float> costs_;
     Facets facet_;

@@ -14,8 +14,9 @@ TriangleGrid::TriangleGrid(const Cells& cells, double rounding) : cells_(cells),
 }
 
 template <class Real>
-void TriangleGrid::cubes_of(const std::array<const std::array<Real, 3>*, 3>& corners,
-                            std::vector<std::int32_t>& out) const {
+void TriangleGrid::cubes_of(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const {
+    // Rounding depends on which corner is the first: always the same one, or a triangle might be left in a cube.
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     std::array<std::array<float, 3>, 3> at;  // corners, in cubes from the low one
     Cell low{}, high{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -67,12 +68,28 @@ void TriangleGrid::add_chunk(Spare& spare) {
     spare.first = start;
 }
 
-void TriangleGrid::enter(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
-    for (std::size_t n = 0; n < count; ++n) enter(triangle, first_[static_cast<std::size_t>(cubes[n])], spare);
+void TriangleGrid::enter(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare) {
+    for (const std::int32_t cube : cubes) enter(triangle, first_[static_cast<std::size_t>(cube)], spare);
 }
 
-void TriangleGrid::remove(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare) {
-    for (std::size_t n = 0; n < count; ++n) remove(triangle, first_[static_cast<std::size_t>(cubes[n])], spare);
+void TriangleGrid::remove(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare) {
+    for (const std::int32_t cube : cubes) remove(triangle, first_[static_cast<std::size_t>(cube)], spare);
+}
+
+// Both are in order, so that one pass through them tells which cubes are in both, and stay as they are.
+void TriangleGrid::move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to,
+                        Spare& spare) {
+    auto before = from.begin(), now = to.begin();
+    while (before != from.end() || now != to.end()) {
+        if (now == to.end() || (before != from.end() && *before < *now)) {
+            remove(triangle, first_[static_cast<std::size_t>(*before++)], spare);
+        } else if (before == from.end() || *now < *before) {
+            enter(triangle, first_[static_cast<std::size_t>(*now++)], spare);
+        } else {
+            ++before;
+            ++now;
+        }
+    }
 }
 
 void TriangleGrid::enter(std::int32_t triangle, std::int32_t& first, Spare& spare) {
@@ -112,9 +129,7 @@ void TriangleGrid::remove(std::int32_t triangle, std::int32_t& first, Spare& spa
 
 template void TriangleGrid::cubes_of(const Mesh<float>&, std::int32_t, std::vector<std::int32_t>&) const;
 template void TriangleGrid::cubes_of(const Mesh<double>&, std::int32_t, std::vector<std::int32_t>&) const;
-template void TriangleGrid::cubes_of(const std::array<const std::array<float, 3>*, 3>&,
-                                     std::vector<std::int32_t>&) const;
-template void TriangleGrid::cubes_of(const std::array<const std::array<double, 3>*, 3>&,
-                                     std::vector<std::int32_t>&) const;
+template void TriangleGrid::cubes_of(std::array<const std::array<float, 3>*, 3>, std::vector<std::int32_t>&) const;
+template void TriangleGrid::cubes_of(std::array<const std::array<double, 3>*, 3>, std::vector<std::int32_t>&) const;
 
 }  // namespace isocore::simplification

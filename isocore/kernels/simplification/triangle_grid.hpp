@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "common/array.hpp"
@@ -29,14 +30,18 @@ class TriangleGrid {
     // rounding: how far writing moves a corner along each axis, in coordinates; a triangle touches what it then may.
     TriangleGrid(const Cells& cells, double rounding);
 
-    // Appends the cubes that a triangle touches, and perhaps a few that it nearly does. The same for the same places.
+    // Appends the cubes that a triangle touches, by number, and perhaps a few that it nearly does. The same for the
+    // same places.
     template <class Real>
-    void cubes_of(const std::array<const std::array<Real, 3>*, 3>& corners, std::vector<std::int32_t>& out) const;
+    void cubes_of(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const;
     template <class Real>
     void cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::vector<std::int32_t>& out) const;
 
-    void enter(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare);
-    void remove(std::int32_t triangle, const std::int32_t* cubes, std::size_t count, Spare& spare);
+    void enter(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare);
+    void remove(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare);
+    // Takes a triangle from the cubes that it touched to those that it touches now, both as cubes_of() found them.
+    void move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to,
+              Spare& spare);
 
     // visit(triangle) of each triangle of a cube.
     template <class Visit>
