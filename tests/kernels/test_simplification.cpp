@@ -9,6 +9,7 @@
 
 #include "check.hpp"
 #include "marching_cubes/marching_cubes.hpp"
+#include "simplification/patch.hpp"
 #include "simplification/simplify.hpp"
 
 namespace {
@@ -62,9 +63,26 @@ void simplify(int seed, const Dims& most, double bound, std::size_t most_triangl
     CHECK(found.vertices == again.vertices && found.triangles == again.triangles);
 }
 
+// A patch is counted in: each triangle of the reference is there once, in however many cells it lies.
+void gather_large_triangles() {
+    const std::vector<float> vertices{0, 0, 0, 4.5f, 0.2f, 0.1f, 0.3f, 5.5f, 0.4f, 5.1f, 4.9f, 3.2f};
+    const std::vector<std::int32_t> triangles{0, 1, 2, 2, 1, 3};
+    const MeshArrays<float> arrays{vertices.data(), 4, triangles.data(), 2};
+    const auto cells = simplification::Cells::around(arrays, 1.0);
+    const simplification::Reference<float> reference(arrays, cells);
+    const simplification::Mesh<float> mesh(arrays, cells, {1, 1, 1}, 0);
+    CHECK(reference.repeats());
+    simplification::Patch patch;
+    patch.gather(reference, mesh, {0, 0, 0}, {{-1, -1, -1}, {6, 6, 6}}, 0);
+    CHECK(patch.size() == 2);
+    patch.gather(reference, mesh, {0, 0, 0}, {{0.1f, 0.1f, 0}, {1.5f, 0.9f, 0.2f}}, 0);
+    CHECK(patch.size() == 2);
+}
+
 }  // namespace
 
 void test_simplification() {
+    gather_large_triangles();
     for (int seed = 0; seed < 30; ++seed) simplify<float>(seed, {9, 8, 7}, 0.2 + 0.2 * (seed % 4), 0);
     for (int seed = 0; seed < 3; ++seed) simplify<double>(seed, {12, 13, 12}, 0.5, 0);
     for (int seed = 0; seed < 3; ++seed) simplify<float>(seed, {9, 9, 9}, std::numeric_limits<double>::infinity(), 20);

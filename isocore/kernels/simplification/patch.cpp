@@ -26,6 +26,21 @@ void Box::add(const Box& other) {
     }
 }
 
+// The triangles in these cells, each once: who counts how often the reference covers a point counts each once.
+template <class Real>
+void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& high) {
+    found_.clear();
+    reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t entry = first; entry < end; ++entry) {
+            found_.push_back(reference.entry(entry));
+            ISOCORE_PREFETCH(reference.corners(found_.back()));
+        }
+    });
+    if (!reference.repeats()) return;
+    std::sort(found_.begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+}
+
 template <class Real>
 void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
                    const Box& box, std::uint32_t sheet) {
@@ -39,39 +54,28 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
         low[a] = cell(box.low[a]);
         high[a] = cell(box.high[a]);
     }
+    find(reference, low, high);
+    for (const std::int32_t triangle : found_) ISOCORE_PREFETCH(reference.place(reference.corners(triangle)[1]));
     size_ = 0;
-    runs_.clear();
-    reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
-        runs_.push_back({first, end});
-        ISOCORE_PREFETCH(reference.corners(reference.entry(first)));
-        ISOCORE_PREFETCH(reference.corners(reference.entry(end - 1)));
-    });
-    for (const auto& [first, end] : runs_) {
-        for (std::uint32_t entry = first; entry < end; ++entry)
-            ISOCORE_PREFETCH(reference.place(reference.corners(reference.entry(entry))[1]));
-    }
-    for (const auto& [first, end] : runs_) {
-        if (size_ + (end - first) + kLanes > room_) make_room(2 * (size_ + (end - first)) + 16 * kLanes);
-        float* to = numbers_.data() + size_;
-        const std::size_t room = room_;
-        for (std::uint32_t entry = first; entry < end; ++entry) {
-            const std::int32_t triangle = reference.entry(entry);
-            if (!reference.is_in(triangle, sheet)) continue;
-            const std::int32_t* const corners = reference.corners(triangle);
-            for (std::size_t n = 0; n < 3; ++n) {
-                const Real* const at = reference.place(corners[n]);
-                for (std::size_t a = 0; a < 3; ++a) {
-                    if constexpr (std::is_same_v<Real, float>)
-                        to[(3 * n + a) * room] = at[a];
-                    else
-                        to[(3 * n + a) * room] = static_cast<float>(at[a] - origin[a]);
-                }
+    if (found_.size() + kLanes > room_) make_room(2 * found_.size() + 16 * kLanes);
+    float* to = numbers_.data();
+    const std::size_t room = room_;
+    for (const std::int32_t triangle : found_) {
+        if (!reference.is_in(triangle, sheet)) continue;
+        const std::int32_t* const corners = reference.corners(triangle);
+        for (std::size_t n = 0; n < 3; ++n) {
+            const Real* const at = reference.place(corners[n]);
+            for (std::size_t a = 0; a < 3; ++a) {
+                if constexpr (std::is_same_v<Real, float>)
+                    to[(3 * n + a) * room] = at[a];
+                else
+                    to[(3 * n + a) * room] = static_cast<float>(at[a] - origin[a]);
             }
-            to[kBorder * room] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
-            ++to;
         }
-        size_ = static_cast<std::size_t>(to - numbers_.data());
+        to[kBorder * room] = reference.may_be_at_border(triangle) ? 1.0f : 0.0f;
+        ++to;
     }
+    size_ = static_cast<std::size_t>(to - numbers_.data());
     // Then eight at once.
     for (std::size_t n = 0; n < kBorder; ++n) {
         const Floats by(mesh.stretch()[n % 3]);

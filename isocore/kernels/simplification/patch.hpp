@@ -23,7 +23,7 @@ struct Box {
 class Patch {
   public:
     std::size_t size() const { return size_; }
-    // Takes all triangles of a sheet in cells that touch a box around `origin`.
+    // Takes all triangles of a sheet in cells that touch a box around `origin`, each once.
     template <class Real>
     void gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
                 const Box& box, std::uint32_t sheet);
@@ -47,6 +47,8 @@ class Patch {
   private:
     static constexpr std::size_t kBorder = 9, kColumns = 10;
 
+    template <class Real>
+    void find(const Reference<Real>& reference, const Cell& low, const Cell& high);
     void make_room(std::size_t size);
     std::size_t make_room_for(const Patch& from);
     void end();
@@ -60,9 +62,9 @@ class Patch {
     const float* column(std::size_t number) const { return numbers_.data() + number * room_; }
     float* column(std::size_t number) { return numbers_.data() + number * room_; }
 
-    std::size_t room_ = 0;                            // of a column
-    std::vector<float> numbers_;                      // column by column
-    std::vector<std::array<std::uint32_t, 2>> runs_;  // of the reference's entries
+    std::size_t room_ = 0;             // of a column
+    std::vector<float> numbers_;       // column by column
+    std::vector<std::int32_t> found_;  // triangles of the reference
 };
 
 }  // namespace isocore::simplification

@@ -35,6 +35,8 @@ class Reference {
             }
         }
     }
+    // May a triangle have several entries?
+    bool repeats() const { return entries_.size() > mesh_.triangle_count; }
     // The triangle of an entry.
     std::int32_t entry(std::uint32_t number) const {
         return entries_.empty() ? static_cast<std::int32_t>(number) : entries_[number];
