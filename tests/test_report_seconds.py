@@ -53,7 +53,7 @@ def test_seconds_are_one_number_everywhere(tmp_path: Path) -> None:
     assert page["totals"] == whole["totals"]
     assert [run["seconds"] for run in page["outputs"]] == [run["seconds"] for run in whole["outputs"]]
     again = CliRunner().invoke(report, [str(tmp_path / "r.json")])
-    assert [row[PLACE] for row in cells(again.stderr)] == totals
+    assert [row[PLACE] for row in cells(again.stdout)] == totals
     compared = CliRunner().invoke(report, ["--compare", str(tmp_path / "r.json"), str(tmp_path / "r.json")])
     for total in totals:
         assert compared.stdout.count(f" {total} ") >= 2 or float(total) == 0
