@@ -9,9 +9,8 @@ import os
 from importlib.util import find_spec
 
 if not find_spec("isocore._processor"):  # where Python looks first into the folder that it was started in
-    here = os.path.dirname(__file__)  # noqa: PTH120 - pathlib takes longer to import than all of the help
     todo = "start Python elsewhere, or as `python -P`, once isocore is installed"
-    raise ImportError(f"{here}: are isocore's sources, without compiled kernels; {todo}", name=__name__)
+    raise ImportError(f"{__file__}: here are isocore's sources, without compiled kernels; {todo}", name=__name__)
 
 from isocore import _processor
 

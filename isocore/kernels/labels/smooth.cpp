@@ -92,31 +92,14 @@ class EdgeVertices {
 
     // Moves those of a block by one step, from their places in `from` to those in `to`.
     void step(std::size_t block, const Places& from, Places& to, float factor, bool new_normals) {
+        // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
+        using Self = EdgeVertices;
+        constexpr std::array kMoves{&Self::move<0>, &Self::move<0>, &Self::move<0>, &Self::move<3>, &Self::move<4>,
+                                    &Self::move<5>, &Self::move<6>, &Self::move<7>, &Self::move<8>};
         for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
             if (new_normals) set_normals(runs_[n]);
-            // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
-            switch (runs_[n].ring) {
-                case 3:
-                    move<3>(runs_[n], from, to, factor);
-                    break;
-                case 4:
-                    move<4>(runs_[n], from, to, factor);
-                    break;
-                case 5:
-                    move<5>(runs_[n], from, to, factor);
-                    break;
-                case 6:
-                    move<6>(runs_[n], from, to, factor);
-                    break;
-                case 7:
-                    move<7>(runs_[n], from, to, factor);
-                    break;
-                case 8:
-                    move<8>(runs_[n], from, to, factor);
-                    break;
-                default:
-                    move<0>(runs_[n], from, to, factor);
-            }
+            const std::size_t known = runs_[n].ring < kMoves.size() ? runs_[n].ring : 0;
+            (this->*kMoves[known])(runs_[n], from, to, factor);
         }
     }
 
