@@ -310,6 +310,12 @@ class JoinedPoints(NamedTuple):
 
 def join_points(points: _Float64, distance: float = 0.0) -> JoinedPoints: ...
 
+# renumbered: the new number of each corner
+def renumbered(corners: _Int32, number: _Int32) -> _Int32: ...
+
+# values_agree: has each point the value of the one it became?
+def values_agree(values: _Real, number: _Int32, joined: _Real) -> bool: ...
+
 class LabelCensus(NamedTuple):
     values: _Float64  # ascending
     counts: npt.NDArray[np.uint64]  # samples of each

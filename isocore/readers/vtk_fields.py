@@ -94,7 +94,7 @@ def component_of(path: str, field: FieldInfo, asked: int | str | None) -> int | 
 
 
 def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> npt.NDArray[Any]:
-    """One float32 or float64 per tuple of the flat `values`, in memory of its own.
+    """One float32 or float64 per tuple of the flat `values`, which may lie in their memory.
 
     Integers become float32 where that holds each of them exactly, float64 otherwise.
     """
@@ -104,7 +104,7 @@ def scalar(values: npt.NDArray[Any], components: int, component: int | None) -> 
         return magnitudes(tuples, np.float32 if single else np.float64)
     column = tuples[:, component]
     if column.dtype.kind == "f":
-        return np.array(column, dtype=column.dtype.newbyteorder("="))
+        return np.require(column, column.dtype.newbyteorder("="), ("C", "A"))
     largest = max(int(column.max()), -int(column.min())) if len(column) else 0
     return column.astype(np.float32 if largest <= _EXACT_IN_FLOAT32 else np.float64)
 

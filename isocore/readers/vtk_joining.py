@@ -15,7 +15,6 @@ from isocore.readers.vtk_cells import Block
 
 #: Values differ by rounding where they differ by less than this part of the largest: sixteen steps of float32.
 _ROUNDING = 16 * 2.0**-23
-_CHUNK = 1 << 14
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +58,7 @@ def joined_values(
     points_used: tells which points count, (n,): what no cell names has no say. Not called where all values agree.
     """
     result = values[by.first]
-    chunks = (slice(first, first + _CHUNK) for first in range(0, len(values), _CHUNK))
-    if all(np.array_equal(values[chunk], result[by.number[chunk]]) for chunk in chunks):
+    if _kernels.values_agree(values, by.number, result):
         return JoinedValues(result)
     used = points_used()
     members = np.flatnonzero(used)

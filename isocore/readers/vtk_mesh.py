@@ -123,6 +123,7 @@ def _hung_together(
             part, twice = _once(part, by)
     if of_cells:
         part = replace(part, values=_at_points(part))
+    part = replace(part, points=_own(part.points), values=_own(part.values))
     hung = Connectivity(
         ghost_cells=counts[0],
         repeated_cells=twice,
@@ -131,6 +132,11 @@ def _hung_together(
         largest_difference=largest,
     )
     return part, hung, apart
+
+
+def _own(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """In memory of its own, without the file that it was read from."""
+    return array if array.flags.owndata else array.copy()
 
 
 def _once(part: Part, by: Joining) -> tuple[Part, int]:

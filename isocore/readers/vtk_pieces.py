@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from isocore import _kernels
 from isocore.errors import FieldError, InputError
 from isocore.readers.vtk_cells import Block, CellArrays, blocks, count_cells
 from isocore.readers.vtk_convex import CONVEX_SET, convex_sets
@@ -58,9 +59,11 @@ class Ragged:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """One piece, checked, or all of them. points: (n, 3) float64. counts: cells by VTK type, without ghosts.
+    """One piece, checked, or all of them. counts: cells by VTK type, without ghosts.
 
-    values: (n,) of the points, or one for each cell. ragged: the points of the cells of `faces`, which splits them.
+    points: (n, 3) float64. values: (n,) of the points, or one for each cell. Both may be the file's own bytes: where
+    most points are soon joined with others, a copy would be for nothing.
+    ragged: the points of the cells of `faces`, which splits them.
     weights: (n,) of rational Bezier cells' control points, or None. cells: how many the file has.
     carried: (n, k) or, of cells, (c, k) of each further field; of_cells: which of them are of cells.
     """
@@ -83,7 +86,7 @@ def checked(
 ) -> Part:
     """One piece without its ghosts. carried: further fields. Raises InputError, FieldError."""
     path = piece.path or path
-    points = np.array(piece.points, dtype=np.float64)
+    points = np.require(piece.points, np.float64, ("C", "A"))
     if points.size and not (points.min() >= -FARTHEST and points.max() <= FARTHEST):  # NaN is neither
         raise InputError(
             f"{path}: some of its points have coordinates that are not finite, or beyond {FARTHEST:g}; write it again"
@@ -160,11 +163,15 @@ def used_points(part: Part) -> npt.NDArray[np.bool_]:
 
 def renumbered(part: Part, number: npt.NDArray[np.int32]) -> Part:
     """The cells with the new number of each point."""
+
+    def anew(corners: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+        return _kernels.renumbered(corners.ravel(), number).reshape(corners.shape)
+
     return replace(
         part,
-        blocks=[replace(block, cells=number[block.cells]) for block in part.blocks],
-        faces=[replace(faces, corners=number[faces.corners]) for faces in part.faces],
-        ragged=[replace(cells, corners=number[cells.corners]) for cells in part.ragged],
+        blocks=[replace(block, cells=anew(block.cells)) for block in part.blocks],
+        faces=[replace(faces, corners=anew(faces.corners)) for faces in part.faces],
+        ragged=[replace(cells, corners=anew(cells.corners)) for cells in part.ragged],
     )
 
 

@@ -168,3 +168,27 @@ def test_cells_with_points_of_their_own_give_the_surface_of_shared_points():
     assert measure(ours).watertight and measure(ours).triangles == measure(theirs).triangles
     kept = read(folder / "per_cell.vtu", ReadOptions(mesh=MeshOptions(keep_duplicates=True)))
     assert not measure(extract(kept, 0.6, backend="mc")).watertight
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 9000), kind=st.sampled_from([np.float32, np.float64]))
+def test_one_value_that_differs_is_found(seed, count, kind):
+    """Wherever it stands; and cells get the numbers that numpy looks up."""
+    random = np.random.default_rng(seed)
+    joined = random.normal(size=max(1, count // 3)).astype(kind)
+    number = random.integers(0, len(joined), count).astype(np.int32)
+    values = joined[number]
+    assert _kernels.values_agree(values, number, joined)
+    anew = random.permutation(len(joined)).astype(np.int32)
+    assert np.array_equal(_kernels.renumbered(number, anew), anew[number])
+    values[random.integers(count)] = np.nan
+    assert not _kernels.values_agree(values, number, joined)
+
+
+def test_what_names_no_point_is_refused():
+    """Before it is looked up."""
+    for wrong in (3, -1):
+        with pytest.raises(IndexError):
+            _kernels.renumbered(np.array([0, wrong], np.int32), np.zeros(3, np.int32))
+        with pytest.raises(IndexError):
+            _kernels.values_agree(np.zeros(2), np.array([0, wrong], np.int32), np.zeros(3))
