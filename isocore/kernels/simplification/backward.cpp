@@ -7,14 +7,12 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr float kSmall = 6;             // cells: a longer triangle is halved before it is taken to pieces
-constexpr float kPiece = 0.9f;          // cells: the longest side of a piece
-constexpr int kHalvings = 5;            // of a piece
-constexpr int kMostHalvings = 64;       // of all pieces of a triangle
-constexpr float kLeastMargin = 0.01f;   // cells
-constexpr float kBoxMargin = 1e-3f;     // cells: more than rounding does to a box
-constexpr float kLeastHeight = 1e-3f;   // of its sides, that a triangle must have for a frame of its own
-constexpr std::size_t kMostSteps = 16;  // pieces along a side
+constexpr float kSmall = 6;            // cells: a longer triangle is halved before it is taken to pieces
+constexpr int kHalvings = 8;           // of a triangle and its pieces, one after the other
+constexpr int kMostHalvings = 128;     // of all pieces of a triangle
+constexpr float kLeastMargin = 0.01f;  // cells
+constexpr float kBoxMargin = 1e-3f;    // cells: more than rounding does to a box
+constexpr float kLeastHeight = 1e-3f;  // of its sides, that a triangle must have for a frame of its own
 
 Spot between(const Spot& a, const Spot& b) {
     return {0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])};
@@ -130,40 +128,13 @@ void Backward<Real>::take_facets(const Corners& triangle, Patch& near) {
 // the reference lies within the limit altogether.
 template <class Real>
 bool Backward<Real>::is_near_by_pieces(const Corners& t) {
-    const auto steps = static_cast<std::size_t>(longest_side(t) / kPiece) + 1;
-    if (steps > kMostSteps) return false;
-    const Spot ab = minus(t[1], t[0]), ac = minus(t[2], t[0]);
-    const auto point = [&](std::size_t i, std::size_t j) {
-        const float x = static_cast<float>(i) / static_cast<float>(steps),
-                    y = static_cast<float>(j) / static_cast<float>(steps);
-        return Spot{t[0][0] + x * ab[0] + y * ac[0], t[0][1] + x * ab[1] + y * ac[1], t[0][2] + x * ab[2] + y * ac[2]};
-    };
-    lattice_.resize((steps + 1) * (steps + 2) / 2);
     words_ = (facets_.size() + 63) / 64;
     halvings_ = kMostHalvings;
-    for (std::size_t j = 0, n = 0; j <= steps; ++j) {
-        for (std::size_t i = 0; i + j <= steps; ++i) {
-            if (!find_within(point(i, j), lattice_[n++])) return false;
-        }
+    std::array<Within, 3> within;
+    for (std::size_t n = 0; n < 3; ++n) {
+        if (!find_within(t[n], within[n])) return false;
     }
-    std::size_t row = 0;
-    for (std::size_t j = 0; j < steps; ++j) {
-        const std::size_t next = row + steps - j + 1;
-        for (std::size_t i = 0; i + j < steps; ++i) {
-            const auto holds = [&](std::array<std::size_t, 2> a, std::array<std::size_t, 2> b,
-                                   std::array<std::size_t, 2> c) {
-                const auto at = [&](const std::array<std::size_t, 2>& p) {
-                    return &lattice_[(p[1] == j ? row : next) + p[0]];
-                };
-                return is_near_by_halves({point(a[0], a[1]), point(b[0], b[1]), point(c[0], c[1])},
-                                         {at(a), at(b), at(c)}, kHalvings);
-            };
-            if (!holds({i, j}, {i + 1, j}, {i, j + 1})) return false;
-            if (i + j + 1 < steps && !holds({i + 1, j}, {i + 1, j + 1}, {i, j + 1})) return false;
-        }
-        row = next;
-    }
-    return true;
+    return is_near_by_halves(t, {&within[0], &within[1], &within[2]}, kHalvings);
 }
 
 template <class Real>

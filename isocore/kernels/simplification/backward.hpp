@@ -60,7 +60,6 @@ class Backward {
     bool is_plumbed_ = true;  // are places seen from the triangle that is looked at?
     Facets frame_, facets_;
     std::size_t words_ = 0;
-    std::vector<Within> lattice_;
     int halvings_ = 0;  // that may still be done
 };
 

@@ -32,6 +32,7 @@ class Contraction {
     bool contract(const Ring& ring, std::size_t target);
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
+    float limit() const { return limit_; }
     // Of the last contraction: its star, or one for each sheet that meets on the curve.
     const Star& star(std::size_t n) const { return parts_[n].star; }
     std::size_t star_count() const { return count_; }

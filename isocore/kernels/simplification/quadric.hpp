@@ -51,6 +51,8 @@ class Quadric {
     }
     // The error at the vertex itself.
     float constant() const { return constant_; }
+    // The area of all the triangles.
+    float area() const { return xx_ + yy_ + zz_; }
 
   private:
     float xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;

@@ -11,12 +11,19 @@ namespace {
 
 constexpr std::size_t kAhead = 4;  // vertices
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// An edge is not tried where the planes of both ends lie further away than so many bounds, in the root mean square over
+// their areas. Of a hundred such edges, the rules would allow two.
+constexpr float kHopeless = 1.25f;
+constexpr float kLeastBound = 1e-3f;  // cells: so that a bound of 0 leaves room for rounding
 
 template <class Real>
 class Sweep {
   public:
     Sweep(Mesh<Real>& mesh, Contraction<Real>& contraction, std::vector<float>& costs)
-        : mesh_(mesh), contraction_(contraction), costs_(costs) {}
+        : mesh_(mesh), contraction_(contraction), costs_(costs) {
+        const float most = kHopeless * std::max(contraction.limit(), kLeastBound);
+        most_squared_ = most * most;
+    }
 
     // The least of the costs of edges from the ring's centre that did not fail yet, and which; infinity if there is
     // none.
@@ -47,6 +54,7 @@ class Sweep {
         for (std::size_t n = 0; n < ring_.count; ++n) {
             const auto to = static_cast<std::size_t>(ring_.neighbours[n]);
             each_[n] = std::max(0.0f, each_[n]) + mesh_.quadrics[to].constant();
+            if (each_[n] > most_squared_ * (quadric.area() + mesh_.quadrics[to].area())) each_[n] = kInfinity;
         }
     }
 
@@ -94,6 +102,7 @@ class Sweep {
     Mesh<Real>& mesh_;
     Contraction<Real>& contraction_;
     std::vector<float>& costs_;
+    float most_squared_;
     Ring ring_;
     std::array<float, Ring::kRoom> each_;
     std::size_t cheapest_ = 0;
