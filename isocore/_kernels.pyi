@@ -238,8 +238,15 @@ def build_index(
     hexes: _Int32,
     values: _Real,
     threads: int = 1,
-    cells_per_block: int = 131072,
+    cells_per_block: int = 0,  # as many as is best
 ) -> BuiltIndex: ...
+
+# in_order: places and values of the points that `original` names
+class OrderedField(NamedTuple):
+    points: _Float64
+    values: _Real
+
+def in_order(points: _Float64, values: _Real, original: _Int32, threads: int = 1) -> OrderedField: ...
 
 class WalkedMesh(NamedTuple):
     vertices: _Real  # the mesh's space; float32 if `single`

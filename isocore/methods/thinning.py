@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from isocore import _kernels
 from isocore.cell_mesh import CellMesh
 from isocore.errors import InputError, IsocoreError
@@ -23,10 +21,11 @@ from isocore.methods.mesh_index import IndexPart, MeshIndex
 from isocore.methods.simplifying import mesh_simplifier
 
 
-def build_index(mesh: CellMesh, threads: int = 1, *, cells_per_block: int = 1 << 17) -> MeshIndex:
+def build_index(mesh: CellMesh, threads: int = 1, *, cells_per_block: int = 0) -> MeshIndex:
     """Thin the mesh; linear in its cells, and the same for any number of threads.
 
-    cells_per_block: blocks of cells are thinned apart, then what remains of them; this changes the skeleton only.
+    cells_per_block: blocks of cells are thinned apart, then what remains of them; this changes the skeleton only. 0 for
+    as many as is best.
     """
     built = _kernels.build_index(mesh.points, mesh.tets, mesh.hexes, mesh.values, threads, cells_per_block)
     return MeshIndex(IndexPart(*built.tets), IndexPart(*built.hexes), built.original)
@@ -76,7 +75,7 @@ def _index_of(
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh, threads)
     if not outlook.named:
-        return index, ready_index(mesh, index, built=True), tuple(warnings)
+        return index, ready_index(mesh, index, threads, built=True), tuple(warnings)
     if outlook.isovalues == 1:
         warnings.append("one isovalue does not repay thinning: choose -b mc, or keep the index with `isocore index`")
     if index.extrema > NOISE * len(mesh.points):
@@ -85,7 +84,7 @@ def _index_of(
             f"{share:.0f} % of the points are extrema, so the field is noise to thinning and its skeleton holds "
             f"{index.skeleton_cells:,} of {mesh.cells:,} cells: -b mc may be faster"
         )
-    return index, ready_index(mesh, index, built=True), tuple(warnings)
+    return index, ready_index(mesh, index, threads, built=True), tuple(warnings)
 
 
 def _checked(path: Path, mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
@@ -117,16 +116,17 @@ def _oddities(index: MeshIndex) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def ready_index(mesh: CellMesh, index: MeshIndex, *, built: bool = False) -> _kernels.Index:
+def ready_index(mesh: CellMesh, index: MeshIndex, threads: int = 1, *, built: bool = False) -> _kernels.Index:
     """The mesh and its index as the kernel takes them: checked here once, then ready for any isovalue.
 
     `propagate` draws the isosurface as a full scan finds it; `walk` is its search alone, in the index's numbers.
     Raises ValueError if the index names what is not there. built: it is of this mesh and this process, and not checked.
     """
     tets, hexes = ((part.records, part.skeleton, part.low, part.high) for part in index.parts)
+    points, values = _kernels.in_order(mesh.points, mesh.values, index.original, threads)
     return _kernels.Index(
-        points=np.take(mesh.points, index.original, axis=0),  # half the time of an index
-        values=mesh.values[index.original],
+        points=points,
+        values=values,
         tets=tets,
         hexes=hexes,
         original=index.original,

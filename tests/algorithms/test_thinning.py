@@ -25,7 +25,7 @@ def body_with(body: str, field: str, *, hexes: bool, seed: int = 0) -> CellMesh:
     return meshes.shuffled(meshes.with_values(mesh, meshes.FIELDS[field](mesh, random)), random)
 
 
-def skeleton_of(mesh: CellMesh, cells_per_block: int = 1 << 17) -> list[int]:
+def skeleton_of(mesh: CellMesh, cells_per_block: int = 0) -> list[int]:
     """The skeleton in the mesh's own cell numbers: the index has others, so cells are known by their points."""
     index = build_index(mesh, cells_per_block=cells_per_block)
     part, cells = (index.tets, mesh.tets) if len(mesh.tets) else (index.hexes, mesh.hexes)
@@ -34,7 +34,7 @@ def skeleton_of(mesh: CellMesh, cells_per_block: int = 1 << 17) -> list[int]:
     return sorted(number[frozenset(cell)] for cell in corners.tolist())
 
 
-def assert_same_as_full_scan(mesh: CellMesh, limit: int = 12, cells_per_block: int = 1 << 17) -> None:
+def assert_same_as_full_scan(mesh: CellMesh, limit: int = 12, cells_per_block: int = 0) -> None:
     ready = ready_index(mesh, build_index(mesh, cells_per_block=cells_per_block))
     for isovalue in meshes.isovalues(mesh, limit):
         vertices, triangles, seeds, visited, _ = ready.propagate(isovalue)
@@ -83,7 +83,7 @@ def test_the_skeleton_carries_components_and_loops(body: str, hexes: bool) -> No
     """Connected within every component of the glued mesh, and onto its loops: by rank over Z2; blocks or not."""
     mesh = body_with(body, "smooth", hexes=hexes)
     glued = Glued(mesh)
-    for cells_per_block in (1 << 17, 30):
+    for cells_per_block in (0, 30):
         assert_carries_all(mesh, glued, skeleton_of(mesh, cells_per_block), body)
 
 
@@ -273,3 +273,19 @@ def test_the_report_part_counts_the_search() -> None:
     assert search["extrema"] == 2
     assert 0 < search["seeds"] <= search["skeleton"]
     assert search["visited"] == search["intersected"] > 0
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_points_and_values_are_ordered_as_numpy_takes_them(threads: int, kind: type) -> None:
+    """In several chunks; and a number that names no point is refused."""
+    random = np.random.default_rng(1)
+    points, values = random.normal(size=(150_000, 3)), random.normal(size=150_000).astype(kind)
+    original = random.permutation(150_000).astype(np.int32)
+    ordered = _kernels.in_order(points, values, original, threads)
+    assert np.array_equal(ordered.points, points[original])
+    assert np.array_equal(ordered.values, values[original])
+    for wrong in (-1, 150_000):
+        original[77_777] = wrong
+        with pytest.raises(IndexError):
+            _kernels.in_order(points, values, original, threads)

@@ -33,7 +33,7 @@ from isocore.methods.thinning import build_index, ready_index
 from isocore.readers.cell_splitting import split_cells
 
 #: Cells per block: as ever, and so few that small meshes have many blocks.
-BLOCKS = (1 << 17, 8, 24, 100)
+BLOCKS = (0, 8, 24, 100)
 REAL = Path(__file__).parents[3] / "shared" / "data" / "meshes"
 
 

@@ -1,5 +1,5 @@
-// bind_thinning.cpp - build_index(points, tets, hexes, values), and the class Index: an index and its mesh, checked
-// once and then ready to propagate one isovalue after the other.
+// bind_thinning.cpp - build_index(points, tets, hexes, values); in_order(points, values, original); and the class
+// Index: an index and its mesh, checked once and then ready to propagate one isovalue after the other.
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
@@ -13,6 +13,7 @@
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/named_tuple.hpp"
+#include "thinning/mesh/ordering.hpp"
 #include "thinning/mesh/thinning.hpp"
 
 namespace isocore::python {
@@ -42,15 +43,33 @@ void bind_build(nb::module_& module, const NamedTuple& index_part, const NamedTu
             {
                 const nb::gil_scoped_release unlocked;
                 index = thinning::build(field, {tets.data(), hexes.data(), tets.shape(0), hexes.shape(0)},
-                                        {threads, std::max<std::size_t>(cells_per_block, 1)});
+                                        {threads, cells_per_block});
             }
             return built_index(part_to_numpy(std::move(index.tets), kTetRecord, index_part),
                                part_to_numpy(std::move(index.hexes), kHexRecord, index_part),
                                to_numpy(std::move(index.points)));
         },
         nb::arg("points").noconvert(), nb::arg("tets").noconvert(), nb::arg("hexes").noconvert(),
-        nb::arg("values").noconvert(), nb::arg("threads") = 1,
-        nb::arg("cells_per_block") = thinning::Work{}.cells_per_block);
+        nb::arg("values").noconvert(), nb::arg("threads") = 1, nb::arg("cells_per_block") = 0);
+}
+
+template <class Value>
+void bind_order(nb::module_& module, const NamedTuple& ordered_field) {
+    module.def(
+        "in_order",
+        [=](const Rows<double, 3>& points, const Vector<Value>& values, const Vector<std::int32_t>& original,
+            int threads) {
+            if (values.shape(0) != points.shape(0)) throw std::invalid_argument("there must be one value per point");
+            const mesh::Field<Value> field{points.data(), values.data(), values.shape(0)};
+            thinning::OrderedField<Value> ordered;
+            {
+                const nb::gil_scoped_release unlocked;
+                ordered = thinning::in_order(field, original.data(), original.shape(0), threads);
+            }
+            return ordered_field(to_numpy(std::move(ordered.points), 3), to_numpy(std::move(ordered.values)));
+        },
+        nb::arg("points").noconvert(), nb::arg("values").noconvert(), nb::arg("original").noconvert(),
+        nb::arg("threads") = 1);
 }
 
 // Records, skeleton, low and high ends of all cells of one kind.
@@ -142,6 +161,9 @@ void bind_thinning(nb::module_& module) {
     const NamedTuple built_index(module, "BuiltIndex", {"tets", "hexes", "original"});
     bind_build<float>(module, index_part, built_index);
     bind_build<double>(module, index_part, built_index);
+    const NamedTuple ordered_field(module, "OrderedField", {"points", "values"});
+    bind_order<float>(module, ordered_field);
+    bind_order<double>(module, ordered_field);
 
     const NamedTuple walked_mesh(module, "WalkedMesh", {"vertices", "triangles", "seeds", "visited", "edges"});
     const NamedTuple visited_cells(module, "VisitedCells", {"tets", "hexes", "seeds"});

@@ -21,6 +21,7 @@ using std::size_t;
 template <class Cell>
 Part make_part(Gluing<Cell>&& gluing, const Array<double>& heights, Work work) {
     Part part;
+    if (gluing.cells == 0) return part;
     const Skeleton skeleton = thin(gluing, heights, work);
     std::vector<std::pair<double, int32_t>> by_low(skeleton.cells.size());
     std::vector<double> highest(skeleton.cells.size());

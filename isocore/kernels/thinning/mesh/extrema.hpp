@@ -71,18 +71,43 @@ class Blocks {
     std::vector<std::uint8_t> apart_;  // by point: the first level on which all cells at it are of one block
 };
 
-// Compares along the edges of cells only, also in hexahedra: a saddle inside one is no extremum, but two corners across
-// it may both be.
+// Which corner is the higher one: by height, then by id.
 template <class Cell>
-std::array<std::uint8_t, Cell::kCorners> marks_of(const std::int32_t* points, const double* heights) {
-    std::array<double, Cell::kCorners> height;
-    for (std::size_t n = 0; n < Cell::kCorners; ++n) height[n] = heights[points[n]];
-    std::array<std::uint8_t, Cell::kCorners> marks{};
-    for (const auto& [a, b] : Cell::kShape.ends) {
-        const bool above = (height[a] > height[b]) | ((height[a] == height[b]) & (points[a] > points[b]));
+class Heights {
+  public:
+    Heights(const std::int32_t* points, const double* heights) : points_(points) {
+        for (std::size_t n = 0; n < Cell::kCorners; ++n) height_[n] = heights[points[n]];
+    }
+    bool above(std::size_t a, std::size_t b) const {
+        return (height_[a] > height_[b]) | ((height_[a] == height_[b]) & (points_[a] > points_[b]));
+    }
+
+  private:
+    const std::int32_t* points_;
+    std::array<double, Cell::kCorners> height_;
+};
+
+// Compares along the edges of cells only: a saddle inside a hexahedron is no extremum, but two corners across it may
+// both be.
+inline std::array<std::uint8_t, 8> marks_of(mesh::Hex, const Heights<mesh::Hex>& heights) {
+    std::array<std::uint8_t, 8> marks{};
+    for (const auto& [a, b] : mesh::Hex::kShape.ends) {
+        const bool above = heights.above(a, b);
         marks[a] |= static_cast<std::uint8_t>(kHasHigher - above);
         marks[b] |= static_cast<std::uint8_t>(kHasLower + above);
     }
+    return marks;
+}
+
+// All corners of a tetrahedron are joined by edges, so only its lowest and its highest lack something.
+inline std::array<std::uint8_t, 4> marks_of(mesh::Tet, const Heights<mesh::Tet>& heights) {
+    const std::size_t first = heights.above(0, 1), second = 2 + std::size_t{heights.above(2, 3)};
+    const std::size_t lowest = heights.above(first, second) ? second : first;
+    const std::size_t highest = heights.above(1 - first, 5 - second) ? 1 - first : 5 - second;
+    std::array<std::uint8_t, 4> marks;
+    marks.fill(kHasLower | kHasHigher);
+    marks[lowest] = kHasHigher;
+    marks[highest] = kHasLower;
     return marks;
 }
 
@@ -95,6 +120,8 @@ std::size_t count_cells(const Gluing<Cell>& gluing, const Array<double>& heights
         std::int32_t point, cell;
         std::uint8_t marks;
     };
+    remaining.points().reserve(heights.size());
+    ask_for_large_pages(remaining.points());
     remaining.points().resize(heights.size());
     const auto add = [&](std::int32_t point, std::int32_t cell, std::uint8_t seen) {
         Touching& touching = remaining.at(point);
@@ -107,7 +134,7 @@ std::size_t count_cells(const Gluing<Cell>& gluing, const Array<double>& heights
         for (std::size_t cell = blocks.first_cell(block); cell < blocks.first_cell(block + 1); ++cell) {
             if (remaining.loose(cell)) continue;
             const std::int32_t* points = gluing.record(cell);
-            const auto seen = marks_of<Cell>(points, heights.data());
+            const auto seen = marks_of(Cell{}, Heights<Cell>(points, heights.data()));
             const auto id = static_cast<std::int32_t>(cell);
             for (std::size_t n = 0; n < Cell::kCorners; ++n) {
                 if (blocks.has(block, points[n]))

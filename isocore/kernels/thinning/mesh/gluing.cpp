@@ -300,6 +300,7 @@ Gluing<Cell> glue(const mesh::Field<Value>& field, const int32_t* cells, size_t 
     if (count * Cell::kEdges > static_cast<size_t>(std::numeric_limits<int32_t>::max())) {
         throw std::length_error("the mesh has more cells than an index can name");
     }
+    if (count == 0) return {};
     return Gluer<Cell, Value>(field, cells, count, points, threads).run();
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "common/array.hpp"
+#include "common/mesh_field.hpp"
 
 namespace isocore::thinning {
 
@@ -16,5 +17,17 @@ struct PointOrder {
 
 // points: x, y, z of each of `size`. The same for any number of threads.
 PointOrder order_points(const double* points, std::size_t size, int threads);
+
+// The places and values of a field in that order.
+template <class Value>
+struct OrderedField {
+    Array<double> points;  // x, y, z of each
+    Array<Value> values;
+};
+
+// original: `size` of the field's points. Throws std::out_of_range where one is none of them.
+template <class Value>
+OrderedField<Value> in_order(const mesh::Field<Value>& field, const std::int32_t* original, std::size_t size,
+                             int threads);
 
 }  // namespace isocore::thinning

@@ -31,20 +31,22 @@ class Thinner {
         : gluing_(gluing),
           left_(gluing),
           outsides_(gluing),
-          blocks_(gluing, heights.size(), work.cells_per_block),
+          blocks_(gluing, heights.size(), cells_per_block(gluing.cells, work)),
           threads_(work.threads) {
         extrema_ = count_cells(gluing, heights, blocks_, left_, work.threads);
     }
 
     Skeleton run() {
-        outsides_.join_boundary();
         std::vector<Array<int32_t>> waiting(blocks_.size());
         for (const int32_t place : gluing_.boundary) {
             const auto cell = static_cast<size_t>(place) / Cell::kFaces;
             left_.queue(static_cast<int32_t>(cell), waiting[blocks_.of(cell)]);
         }
         const size_t voids = outsides_.add(blocks_.size());
-        parallel_for(threads_, blocks_.size(), [&](size_t block) {
+        // Meanwhile, as no block asks for it, the pieces of the boundary are joined.
+        parallel_for(threads_, blocks_.size() + 1, [&](size_t task) {
+            if (task == 0) return outsides_.join_boundary();
+            const size_t block = task - 1;
             thin_block(0, waiting[block], [&](Array<int32_t>& found) { open_block(block, voids + block, found); });
         });
         for (unsigned level = 1; waiting.size() > 1; ++level) {
@@ -65,6 +67,13 @@ class Thinner {
     }
 
   private:
+    // As few blocks as occupy the threads of a common machine: the fewer, the fewer cells lie in rims, and those take
+    // twice as long.
+    static size_t cells_per_block(size_t cells, Work work) {
+        constexpr size_t kBlocks = 16, kLeast = size_t{1} << 17;
+        return work.cells_per_block > 0 ? work.cells_per_block : std::max(cells / kBlocks, kLeast);
+    }
+
     static constexpr size_t kRecordsAhead = 12, kNamedAhead = 6;
 
     // The outside behind a face, or -1 where a cell remains. While blocks are thinned, outsides that are one by now may

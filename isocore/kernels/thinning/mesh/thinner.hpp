@@ -14,10 +14,11 @@
 
 namespace isocore::thinning {
 
-// How the work is shared: on how many threads, which changes nothing, and in blocks of how many cells.
+// How the work is shared: on how many threads, which changes nothing, and in blocks of how many cells; 0 for as many as
+// is best.
 struct Work {
     int threads = 1;
-    std::size_t cells_per_block = std::size_t{1} << 17;
+    std::size_t cells_per_block = 0;
 };
 
 struct Skeleton {
