@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 import click
 
@@ -25,8 +24,7 @@ default_threads = processors
 F = TypeVar("F", bound=Callable[..., Any])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
+class Reading(NamedTuple):
     """What a file cannot tell about itself, as it was typed."""
 
     volume: int | Literal["all"] | None
@@ -90,7 +88,7 @@ def reading_and_offset_options(command: Callable[..., None]) -> Callable[..., No
 def _with_reading(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def with_reading(*arguments: Any, **values: Any) -> None:
-        reading = Reading(**{item.name: values.pop(item.name) for item in fields(Reading)})
+        reading = Reading(**{name: values.pop(name) for name in Reading._fields})
         if reading.merge_points is not None and reading.keep_duplicates:
             raise click.UsageError("--merge-points joins points and --keep-duplicates leaves them; give one of them")
         command(*arguments, reading=reading, **values)

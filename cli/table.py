@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from isocore.errors import printable
 
@@ -17,8 +17,7 @@ _FEW_WORDS = 24
 _INDENT = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(NamedTuple):
     """right: set to the right, as numbers are.
 
     leaves: the place in the order in which columns leave a narrow screen, from 1; 0 for never.

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import fields
+from typing import Any, NamedTuple
 
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
@@ -41,8 +41,7 @@ _THINNING, _LOOKING = 285.0, 5.0
 _WALKING = 1.5
 
 
-@dataclass(frozen=True, slots=True)
-class Backend:
+class Backend(NamedTuple):
     """One method. accepts: the field types it takes; options: the names in Options that it alone understands."""
 
     name: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -54,8 +54,7 @@ class CarriedField:
             )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CellSources:
+class CellSources(NamedTuple):
     """Cells as the file has them, so that a vertex of a surface finds the value of its cell.
 
     nodes: (m, k) int32, points of the mesh that belong to each cell, those that dividing it added too.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -31,8 +31,7 @@ class Connectivity:
     divided_cells: int = 0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CurvedCells:
+class CurvedCells(NamedTuple):
     """Cells that were divided into straight ones, and how value and place run between their nodes.
 
     nodes: (m, L) int32, points of the mesh. pairs: (e, 2) two of a cell's nodes that an edge of a straight cell joins.

@@ -2,8 +2,8 @@
 
 An isovalue is asked for as a number, `otsu`, `pNN` (percentile), `auto`, `A:B:N` (N numbers from A to B), or `A:B:+S`
 (numbers from A towards B in steps of S). The bound on the error is a length in voxels (`0.5`) or in world units
-(`0.3mm`), or `none`. The point that vertices are written about is `auto` or three numbers. The command line's help
-reads this file, so it imports no numpy.
+(`0.3mm`), or `none`. The point that vertices are written about is `auto` or three numbers. Choices of different kinds
+are never equal, because their texts differ. The command line's help reads this file, so it imports no numpy.
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Literal, NamedTuple, TypeAlias, get_args
 
 from isocore.digits import exact
 from isocore.errors import OptionError
@@ -39,8 +38,7 @@ _RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d{1,18})|\+(?
 _LENGTH = re.compile(r"(?P<number>[^a-zµ]+?(e[-+]?\d+)?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(NamedTuple):
     """An isovalue given as such; text: as it was written, since 50 and 50.0 name different outputs."""
 
     value: float
@@ -50,8 +48,7 @@ class Number:
         return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class Percentile:
+class Percentile(NamedTuple):
     """The value below which `percent` (0 to 100) of the finite samples lie; text: as it was written, p90."""
 
     percent: float
@@ -61,27 +58,28 @@ class Percentile:
         return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class Otsu:
+class Otsu(NamedTuple):
     """Otsu's threshold."""
 
+    text: str = "otsu"
+
     def __str__(self) -> str:
-        return "otsu"
+        return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class Auto:
+class Auto(NamedTuple):
     """The middle of two values where there are only two, else Otsu's threshold."""
 
+    text: str = "auto"
+
     def __str__(self) -> str:
-        return "auto"
+        return self.text
 
 
 Choice: TypeAlias = Number | Percentile | Otsu | Auto | Label
 
 
-@dataclass(frozen=True, slots=True)
-class Voxels:
+class Voxels(NamedTuple):
     """A bound of so many voxels, counted along the index axes."""
 
     distance: float
@@ -91,8 +89,7 @@ class Voxels:
         return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class WorldLength:
+class WorldLength(NamedTuple):
     """A bound in the world; unit: one of MILLIMETRES."""
 
     distance: float
@@ -103,8 +100,7 @@ class WorldLength:
         return self.text
 
 
-@dataclass(frozen=True, slots=True)
-class Unbounded:
+class Unbounded(NamedTuple):
     """No bound on the error."""
 
     text: str = "none"
@@ -116,8 +112,7 @@ class Unbounded:
 MaxError: TypeAlias = Voxels | WorldLength | Unbounded
 
 
-@dataclass(frozen=True, slots=True)
-class About:
+class About(NamedTuple):
     """The point that vertices are written about; None is one chosen by the field; text: as it was written."""
 
     point: tuple[float, float, float] | None

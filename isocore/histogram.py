@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,8 +25,7 @@ EXACT_RANGE = 65536
 _MOST_ROUNDS = 16
 
 
-@dataclass(frozen=True, slots=True)
-class Bars:
+class Bars(NamedTuple):
     """Equal bins for drawing, in the scale of the values. low, high: their ends, None without a finite sample."""
 
     low: float | None

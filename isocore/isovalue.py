@@ -8,7 +8,7 @@ classes.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,7 @@ from isocore.labels import Label
 _SHARE_THAT_MOVES = 1e-3
 
 
-@dataclass(frozen=True, slots=True)
-class Chosen:
+class Chosen(NamedTuple):
     """An isovalue: how it was asked for, the number, how that came about, and what its user should know."""
 
     asked: Choice

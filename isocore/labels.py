@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from isocore.errors import OptionError
 
@@ -13,8 +13,7 @@ MOST_LABELS = 100_000
 _LABELS = r"(?P<first>-?\d{1,18})(?:\s*-\s*(?P<last>-?\d{1,18}))?"
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
+class Label(NamedTuple):
     """One label of a label map.
 
     name: what the file or a table calls it, or "". colour: red, green, blue, 0 to 255. file_name: the name as a part of
@@ -30,8 +29,7 @@ class Label:
         return f"label {self.value}"
 
 
-@dataclass(frozen=True, slots=True)
-class Labels:
+class Labels(NamedTuple):
     """Which labels of a map are asked for: their numbers, or None for all but the background; text: as written."""
 
     values: tuple[int, ...] | None

@@ -6,8 +6,8 @@ inside a bubble is a piece of its own. kernels/surface/pieces/README.md has the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,8 +23,7 @@ from isocore.surface import Surface
 _Mask = npt.NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Kept:
+class Kept(NamedTuple):
     """What is left of a surface. whole: all there was.
 
     facts: None where nothing was asked for. message: why nothing is left, else empty.
@@ -85,8 +84,7 @@ def keep_pieces(surface: Surface, options: Options) -> Kept:
     return Kept(smaller, surface, facts, found.remarks(options), message)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Found:
+class _Found(NamedTuple):
     """Shells, and of each piece, at its outer shell: is it closed, its triangles, volume and its shells' area.
 
     piece: of each shell, the outer one of its piece. volume: enclosed between outer shell and bubbles, not negative.

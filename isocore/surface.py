@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,8 +24,7 @@ Point = tuple[float, float, float]
 _COARSEST_STEP = 2.0**-11
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
+class Part(NamedTuple):
     """A run of a surface's vertices and of its triangles, which name no others: a label, or all there is.
 
     vertices, triangles: how many. colour: red, green, blue, 0 to 255. label: its number in a label map. isovalue: of
@@ -205,8 +204,7 @@ def place_fresh(
     return Surface(out, triangles, normals, space, unit)
 
 
-@dataclass(frozen=True, slots=True)
-class Places:
+class Places(NamedTuple):
     """Where an affine puts vertices: at (v, 3) float32 or float64, as they are rounded when they are written.
 
     rounding: how far that moves one along each axis at most, in the frame that they came from.

@@ -9,9 +9,9 @@ import os
 from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path, PurePath
+from typing import NamedTuple
 
 from isocore.batches.places import Folders
 from isocore.errors import OptionError
@@ -21,8 +21,7 @@ from isocore.readers import SEARCHED, files_of, listed_files, lists_surfaces, st
 _LOOKED_AT = 50
 
 
-@dataclass(frozen=True, slots=True)
-class Input:
+class Input(NamedTuple):
     """A file to convert, and the folder it was found in: outputs mirror the way from one to the other.
 
     common: the folder that all that the command names lies below, absolute; None where it has none.
@@ -76,7 +75,7 @@ def find_inputs(names: Iterable[Path]) -> list[Input]:
         if not inside:
             raise OptionError(f"{name}: {_nothing_in(name)}")
         for item in inside:
-            found.setdefault(folders.place_of(item.path), replace(item, common=common))
+            found.setdefault(folders.place_of(item.path), item._replace(common=common))
     listed = {folders.place_of(file) for item in found.values() if not item.refusal for file in listed_files(item.path)}
     return [item for place, item in found.items() if place not in listed]
 

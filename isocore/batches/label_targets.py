@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
@@ -71,7 +71,7 @@ def _with_file_names(choices: Iterable[Label]) -> tuple[Label, ...]:
     plain = [(choice, _safe(choice.name) or f"label_{choice.value}") for choice in choices]
     alike = Counter(name.casefold() for _, name in plain)
     return tuple(
-        replace(choice, file_name=f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name)
+        choice._replace(file_name=f"{name}_{choice.value}" if alike[name.casefold()] > 1 else name)
         for choice, name in plain
     )
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 import string
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from isocore.batches.inputs import Input
 from isocore.choices import Choice
@@ -22,8 +22,7 @@ _NUMBERED = ("volume", "step")
 _DIGITS = r"0?\d{1,2}d?|"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Naming:
+class Naming(NamedTuple):
     """Where surfaces go. output: one file, or `-`; else output_dir and template, with the format as suffix.
 
     picture: where a still of each goes, as a template with its suffix, or None.

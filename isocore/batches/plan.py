@@ -86,7 +86,7 @@ def plan(
         for template in other_templates(naming.template or default):
             if merge and "{isovalue}" in template:
                 continue
-            other = [_job(item, asked, one, replace(naming, template=template)) for item, one in patterns]
+            other = [_job(item, asked, one, naming._replace(template=template)) for item, one in patterns]
             if _is_free(other, written, read):
                 raise OptionError(f"{clash}; tell them apart with --name {template}") from clash
         raise OptionError(f"{clash}; convert them one by one, each with another -d") from clash
@@ -152,7 +152,7 @@ def _job(item: Input, asked: _Asked, pattern: Job, naming: Naming) -> Job:
     except OptionError:
         raise
     except Exception as error:
-        return _job(replace(item, refusal=told(item.path, error)), asked, pattern, naming)
+        return _job(item._replace(refusal=told(item.path, error)), asked, pattern, naming)
     several = len(choices) > 1 and not pattern.together
     pictures = [picture_of(item, choices[0] if pattern.together else choice, pattern, naming) for choice in choices]
     drawn = zip(choices, pictures, strict=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from isocore.batches import stamps
 from isocore.batches.collection import Collections
@@ -14,8 +14,7 @@ from isocore.job import STDOUT, Job
 from isocore.report.record import RunReport
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Batch:
+class Batch(NamedTuple):
     """How jobs are run.
 
     workers: processes at once; 0 runs everything in this one.

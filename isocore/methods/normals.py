@@ -5,9 +5,8 @@ Poston, Wong, Heng, Computer Graphics Forum 17(3), 1998, section 4, rejects tria
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -23,8 +22,7 @@ Mesh = tuple[npt.NDArray[Any], npt.NDArray[np.int32]]
 _SAME_PLACE = np.eye(4)[:3]
 
 
-@dataclass(frozen=True, slots=True)
-class Normals:
+class Normals(NamedTuple):
     """What was asked for of both, else None, and the seconds that each took.
 
     vertices: (v, 3) float32, in the frame of the mesh.

@@ -7,8 +7,7 @@ transposed. At most one axis tells volumes (times, components) apart: the last, 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,8 +20,7 @@ from isocore.volume import Space
 _PIECE = 1 << 20
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(NamedTuple):
     """The samples of one file.
 
     shape: (nx, ny, nz) of each volume.
@@ -51,8 +49,7 @@ class Layout:
         return self.volume_bytes * self.volumes
 
 
-@dataclass(frozen=True, slots=True)
-class Placement:
+class Placement(NamedTuple):
     """affine: (4, 4) float64, index to world, in `unit`: "mm", or "" where the file does not say."""
 
     affine: npt.NDArray[np.float64]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import struct
-from dataclasses import replace
 from typing import Any, BinaryIO
 
 import numpy as np
@@ -71,7 +70,7 @@ class _Scene:
         indices = self._array(corners, "SCALAR", _INDICES)
         primitive = {"attributes": attributes, "indices": indices, "material": len(self._parts)}
         self._meshes.append({"name": part.name, "primitives": [primitive]})
-        self._parts.append(part if surface.colours is None else replace(part, colour=_WHITE))
+        self._parts.append(part if surface.colours is None else part._replace(colour=_WHITE))
 
     def _array(self, values: npt.NDArray[Any], kind: str, target: int, *, bounded: bool = False) -> int:
         block = np.ascontiguousarray(values)
