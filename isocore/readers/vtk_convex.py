@@ -15,6 +15,7 @@ from isocore.readers.vtk_types import FACETED
 CONVEX_SET = 41
 _MOST_POINTS = 32  # a plane is known by one bit for each point in it
 _FLAT = 1e-6  # points this near to a plane lie in it, as a part of the cell's size
+_NEARLY_FLAT = 16 * _FLAT  # and those that faces of one plane, as far as can be told, may have in common
 _CHUNK = 1 << 21  # heights above planes that are computed at a time
 
 
@@ -76,7 +77,33 @@ def _hulls(at: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.intp], npt.NDArr
     in_plane = np.abs(heights[owner, triple]) <= _FLAT
     codes = in_plane @ (np.uint64(1) << np.arange(n, dtype=np.uint64))
     _, first = np.unique(np.stack((owner.astype(np.uint64), codes)), axis=1, return_index=True)
-    return owner[first], _in_turn(at[owner[first]], in_plane[first], normals[owner[first], triple[first]])
+    owner, triple = owner[first], triple[first]
+    face, member = _whole(owner, in_plane[first], np.abs(heights[owner, triple]) <= _NEARLY_FLAT)
+    owner, triple = owner[face], triple[face]
+    return owner, _in_turn(at[owner], member, normals[owner, triple])
+
+
+def _whole(
+    owner: npt.NDArray[np.intp], member: npt.NDArray[np.bool_], near: npt.NDArray[np.bool_]
+) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.bool_]]:
+    """Which faces are left, and their members, where those that three points and nearly a plane have in common are one.
+
+    owner: (f,) ascending. member, near: (f, n) points in the plane of a face, and nearly in it. Of four points that lie
+    nearly in one plane, that of one triple may be near enough to the fourth, and that of another one not.
+    """
+    place = np.arange(len(owner)) - np.searchsorted(owner, owner)
+    shape = (owner[-1] + 1, place.max() + 1, member.shape[1]) if len(owner) else (0, 0, member.shape[1])
+    inside, beyond = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+    inside[owner, place], beyond[owner, place] = member, ~near
+    others = inside.transpose(0, 2, 1)
+    joined = (inside @ others >= 3) & (beyond @ others == 0)
+    whole = (joined.astype(np.float32) @ inside > 0).astype(np.float32)
+    size, common = whole.sum(axis=2), whole @ whole.transpose(0, 2, 1)
+    covered = common == size[:, :, None]
+    earlier = np.tri(shape[1], k=-1, dtype=bool)
+    doubled = covered & ((size[:, None, :] > size[:, :, None]) | (covered.transpose(0, 2, 1) & earlier))
+    kept = ~(doubled & (size[:, None, :] > 0)).any(axis=2)[owner, place]
+    return np.flatnonzero(kept), whole[owner, place][kept] > 0
 
 
 def _in_turn(
