@@ -206,7 +206,8 @@ def test_warnings_and_the_bar_do_not_collide(tmp_path: Path, flags: tuple[str, .
     for n in range(4):
         (failure,) = [line for line in screen.lines if f"b{n}.nii: " in line and line.startswith("isocore: ")]
         assert failure.startswith(f"isocore: {tmp_path}/in/b{n}.nii: ") and len(failure) > len(str(tmp_path)) + 40
-    assert sum("--cap" in line for line in screen.lines) == (4 if flags else 1)
+    # A long line is broken by the screen wherever it ends.
+    assert "".join(screen.lines).count("--cap") == (4 if flags else 1)
     assert [line for line in screen.lines if line.startswith("4 done, 4 failed")]
 
 
