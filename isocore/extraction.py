@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Field = Volume | CellMesh
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Outlook:
     """What is known when a method prepares, besides what was asked. It decides advice and what is worth preparing.
 
@@ -33,7 +33,7 @@ class Outlook:
     named: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Angles:
     """Between each triangle's normal and the field's gradient at its corners, in degrees; p95: 95 % are no larger."""
 
@@ -42,7 +42,7 @@ class Angles:
     max: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Deviation:
     """How far the reference's vertices lie from the surface: largest, mean and root mean square.
 
@@ -64,7 +64,7 @@ class Deviation:
     normal_degrees: Angles | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Simplification:
     """How triangles became fewer: edges contracted, and refused by each rule; seconds: of its own."""
 
@@ -78,7 +78,7 @@ class Simplification:
     seconds: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Search:
     """How the cells that a surface passes through were found, in numbers of cells; None where a method has none.
 
@@ -93,7 +93,7 @@ class Search:
     intersected: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Ambiguous:
     """Cell faces and cells where the samples allow two surfaces; tubes: pairs of loops that were joined by one."""
 
@@ -102,7 +102,7 @@ class Ambiguous:
     tubes: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Climbing:
     """What became of the blocks. highrices: boxes that got triangles; split_again: those that broke the bound."""
 
@@ -113,7 +113,7 @@ class Climbing:
     blocks_skipped: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class LabelFacts:
     """One label of a label map.
 
@@ -129,7 +129,7 @@ class LabelFacts:
     neighbours: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Pieces:
     """What was kept of a surface's pieces, which are solids with their bubbles.
 
@@ -151,7 +151,7 @@ class Pieces:
     volume_filled: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Findings:
     """What a method has to say about one surface, by the report's keys; facts: what no other key covers."""
 

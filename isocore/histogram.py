@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,8 @@ EXACT_RANGE = 65536
 _MOST_ROUNDS = 16
 
 
-class Bars(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Bars:
     """Equal bins for drawing, in the scale of the values. low, high: their ends, None without a finite sample."""
 
     low: float | None

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Given:
     """What was asked of backend and writer; max_error, min_piece, offset: as written. normals: whether they are."""
 
@@ -34,7 +34,7 @@ class Given:
     compress: bool | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Asked:
     """What was asked for: the input and the output as they were named, the isovalue as it was written.
 
@@ -50,7 +50,7 @@ class Asked:
     options: Given | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Written:
     """The output's hash and length."""
 
@@ -58,7 +58,7 @@ class Written:
     bytes: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Carried:
     """A field that was carried to the surface's vertices.
 
@@ -73,7 +73,7 @@ class Carried:
     nonfinite: int
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Colors:
     """What vertices are coloured by: a carried field, or the lengths of one; a map's name; the values at its ends."""
 
@@ -82,7 +82,7 @@ class Colors:
     range: tuple[float, float] | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Reference:
     """Marching cubes on the same field; seconds: prepare and extract."""
 
@@ -92,7 +92,7 @@ class Reference:
     seconds: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Ratio:
     """Ours beside the reference. triangles: reference / ours; seconds: ours / reference; None over zero."""
 
@@ -100,7 +100,7 @@ class Ratio:
     seconds: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Seconds:
     """Seconds by stage, and their sum. own: prepare and extract, the two that a reference has, too."""
 
