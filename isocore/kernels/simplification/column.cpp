@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace isocore::simplification {
 namespace {
 
 // Distances below this, in cells, are not told apart: some times what rounding does to places a few cells away.
 constexpr float kBlur = 1e-5f;
-constexpr float kTilt = 1e-3f;  // what rounding does to a plane's height a cell away, at most
-constexpr float kFar = 1e9f;    // what lanes past the end hold
+constexpr float kFar = 1e9f;       // what lanes past the end hold
+constexpr float kUpright = 0.01f;  // square cells: seen from above, a triangle of less has no plane to speak of
+
+Floats size_of(const Floats& a) { return greatest(a, Floats(0.0f) - a); }
 
 }  // namespace
 
@@ -55,118 +58,85 @@ bool Column::add_parts(const Patch& patch, std::size_t first) {
             greatest(wall.depth(u[0], v[0]), greatest(wall.depth(u[1], v[1]), wall.depth(u[2], v[2])));
         outside = outside | (deepest < Floats(-wall.blur));
     }
-    const Floats lowest = least(h[0], least(h[1], h[2])), highest = greatest(h[0], greatest(h[1], h[2]));
+    Range range{least(h[0], least(h[1], h[2])), greatest(h[0], greatest(h[1], h[2]))};
     const Floats beyond(limit_ + kBlur), limit(limit_), zero(0.0f);
-    const auto beside = outside | (beyond < lowest) | (highest < zero - beyond);
+    const auto are_beyond = [&] { return (beyond < range.lowest) | (range.highest < zero - beyond); };
+    const auto are_within = [&] { return (zero - limit <= range.lowest) & (range.highest <= limit); };
     const unsigned valid = patch.size() - first < kLanes ? (1u << (patch.size() - first)) - 1 : 255u;
-    const unsigned over = ~beside.bits() & valid;
-    const unsigned whole = over & ((zero - limit <= lowest) & (highest <= limit)).bits();
-    unsigned within = whole;
-    unsigned partly = over & ~whole;
-    if (partly != 0) partly &= ~apart(u, v);
-    if (partly != 0) {
-        const unsigned flat = partly & has_low_plane(u, v, h);
-        if (flat != 0) distance_ = limit_;
-        within |= flat;
-        partly &= ~flat;
-    }
-    for (unsigned bits = partly; bits != 0; bits &= bits - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-        std::array<Height, 3> triangle;
-        for (std::size_t n = 0; n < 3; ++n) triangle[n] = {u[n].each()[lane], v[n].each()[lane], h[n].each()[lane]};
-        const Part part = part_of(triangle);
-        if (part == Part::across) return false;
-        if (part == Part::within) {
-            within |= 1u << lane;
-            distance_ = limit_;
-        }
-    }
+    const unsigned over = ~(outside | are_beyond()).bits() & valid;
+    if (over == 0) return true;
+    if (over & ~are_within().bits()) range = parts(u, v, h);
+    const unsigned within = over & are_within().bits();
+    if (over & ~within & ~are_beyond().bits()) return false;
     if (within & patch.at_border(first)) return false;
-    if (whole != 0) {
-        std::array<float, kLanes> packed{};
-        std::array<float, kLanes> heights{};
-        greatest(highest, zero - lowest).pack(whole, packed.data());
-        std::copy_n(packed.begin(), std::popcount(whole), heights.begin());
-        distance_ = std::max(distance_, *std::max_element(heights.begin(), heights.end()));
-    }
+    if (within == 0) return true;
+    std::array<float, 2 * kLanes> heights{};
+    greatest(range.highest, zero - range.lowest).pack(within, heights.data());
+    const auto count = static_cast<std::size_t>(std::popcount(within));
+    distance_ = std::max(distance_, *std::max_element(heights.begin(), heights.begin() + count));
     for (std::size_t n = 0; n < 3; ++n) {
         u[n].pack(within, places_[2 * n].data() + count_);
         v[n].pack(within, places_[2 * n + 1].data() + count_);
     }
-    count_ += static_cast<std::size_t>(std::popcount(within));
+    count_ += count;
     return true;
 }
 
-// Which of eight triangles have a side that the column's triangle lies beyond.
-unsigned Column::apart(const Vector<Floats>& u, const Vector<Floats>& v) const {
-    const Floats zero(0.0f), blur(kBlur);
-    auto out = zero < zero;
+// A part's lowest and highest places are ends of what of its triangle's sides lies in the column, or lie straight above
+// or below a corner of the column's triangle.
+Column::Range Column::parts(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    Range out{Floats(kInfinity), Floats(-kInfinity)};
+    add_sides(u, v, h, out);
+    add_corners(u, v, h, out);
+    return out;
+}
+
+// Where each side enters the column, a blur outside, and where it leaves it.
+void Column::add_sides(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h, Range& out) const {
+    const Floats zero(0.0f), one(1.0f), never(2.0f);
+    std::array<Vector<Floats>, 3> depths;  // by wall
+    for (std::size_t w = 0; w < 3; ++w) {
+        for (std::size_t n = 0; n < 3; ++n) depths[w][n] = walls_[w].depth(u[n], v[n]) + Floats(walls_[w].blur);
+    }
     for (std::size_t n = 0; n < 3; ++n) {
-        const std::size_t m = n == 2 ? 0 : n + 1, other = 3 - n - m;
-        const Floats along = u[m] - u[n], across = v[m] - v[n];
-        const auto side = [&](const Floats& at_u, const Floats& at_v) {
-            return along * (at_v - v[n]) - across * (at_u - u[n]);
-        };
-        const Floats own = side(u[other], v[other]);
-        const Floats a = side(walls_[0].u, walls_[0].v), b = side(walls_[1].u, walls_[1].v),
-                     c = side(walls_[2].u, walls_[2].v);
-        const Floats longer = greatest(along, zero - along) + greatest(across, zero - across);
-        const Floats margin = blur * longer * Floats(1 + extent_);
-        out = out | ((zero < own) & (greatest(a, greatest(b, c)) < zero - margin)) |
-              ((own < zero) & (margin < least(a, least(b, c))));
+        const std::size_t m = n == 2 ? 0 : n + 1;
+        Floats enters = zero, leaves = one;  // shares of the side
+        for (const Vector<Floats>& depth : depths) {
+            const auto starts_outside = depth[n] < zero, ends_outside = depth[m] < zero;
+            const Floats share = depth[n] / (depth[n] - depth[m]);
+            enters = choose(starts_outside, greatest(enters, choose(ends_outside, never, share)), enters);
+            leaves = choose(ends_outside, least(leaves, choose(starts_outside, leaves, share)), leaves);
+        }
+        const Floats way = h[m] - h[n], from = h[n] + enters * way, to = h[n] + leaves * way;
+        out.add(enters <= leaves, {least(from, to), greatest(from, to)});
     }
-    return out.bits();
 }
 
-// Of which of eight triangles does the plane lie within the limit over all of the column's triangle? Then so does what
-// of them lies in the column. Not of those that are nearly upright, whose planes rounding tilts.
-unsigned Column::has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const {
-    const Floats zero(0.0f), u1 = u[1] - u[0], v1 = v[1] - v[0], h1 = h[1] - h[0], u2 = u[2] - u[0], v2 = v[2] - v[0],
-                             h2 = h[2] - h[0], area = u1 * v2 - u2 * v1;
+// How high eight triangles pass over the corners of the column's triangle, where they do. One that is nearly upright
+// may pass there at any of its heights.
+void Column::add_corners(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h, Range& out) const {
+    const Floats zero(0.0f), blur(kBlur);
+    const Range whole{least(h[0], least(h[1], h[2])), greatest(h[0], greatest(h[1], h[2]))};
+    const Floats u1 = u[1] - u[0], v1 = v[1] - v[0], h1 = h[1] - h[0], u2 = u[2] - u[0], v2 = v[2] - v[0],
+                 h2 = h[2] - h[0], area = u1 * v2 - u2 * v1;  // doubled
     const Floats along = (h1 * v2 - h2 * v1) / area, across = (u1 * h2 - u2 * h1) / area;
-    const auto height = [&](const Wall& corner) {
-        return h[0] + along * (Floats(corner.u) - u[0]) + across * (Floats(corner.v) - v[0]);
-    };
-    const Floats a = height(walls_[0]), b = height(walls_[1]), c = height(walls_[2]);
-    const Floats limit(limit_ - kTilt * (1 + extent_));
-    constexpr float kUpright = 0.01f;
-    return ((greatest(a, greatest(b, c)) <= limit) & (zero - limit <= least(a, least(b, c))) &
-            ((Floats(kUpright) < area) | (area < Floats(-kUpright))))
-        .bits();
-}
-
-// What of a triangle lies in the column: clipped at the column's three walls, a blur outside.
-Column::Part Column::part_of(const std::array<Height, 3>& triangle) const {
-    std::array<Height, 6> part, next;
-    std::size_t count = 3;
-    std::copy(triangle.begin(), triangle.end(), part.begin());
-    for (const Wall& wall : walls_) {
-        std::array<float, 6> beyond;
-        std::size_t inside = 0;
-        for (std::size_t n = 0; n < count; ++n) {
-            beyond[n] = -wall.depth(part[n].u, part[n].v) - wall.blur;
-            inside += static_cast<std::size_t>(beyond[n] <= 0);
+    const Floats turn = choose(area < zero, Floats(-1.0f), Floats(1.0f));
+    const Floats slack = blur * (size_of(along) + size_of(across));
+    const auto is_upright = size_of(area) < Floats(kUpright);
+    for (const Wall& corner : walls_) {
+        const Floats at_u(corner.u), at_v(corner.v);
+        auto is_over = zero <= zero;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const std::size_t m = n == 2 ? 0 : n + 1;
+            const Floats to_u = u[m] - u[n], to_v = v[m] - v[n];
+            const Floats margin = blur * (size_of(to_u) + size_of(to_v)) * Floats(1 + extent_);
+            is_over = is_over & (zero - margin <= turn * (to_u * (at_v - v[n]) - to_v * (at_u - u[n])));
         }
-        if (inside == count) continue;
-        if (inside == 0) return Part::none;
-        std::size_t kept = 0;
-        for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t m = n + 1 == count ? 0 : n + 1;
-            const Height &from = part[n], &to = part[m];
-            if (beyond[n] <= 0) next[kept++] = from;
-            if ((beyond[n] <= 0) != (beyond[m] <= 0)) {
-                const float share = beyond[n] / (beyond[n] - beyond[m]);
-                next[kept++] = {from.u + share * (to.u - from.u), from.v + share * (to.v - from.v),
-                                from.h + share * (to.h - from.h)};
-            }
-        }
-        part = next;
-        count = kept;
+        const Floats height = h[0] + along * (at_u - u[0]) + across * (at_v - v[0]);
+        out.add(is_over, {choose(is_upright, whole.lowest, greatest(whole.lowest, height - slack)),
+                          choose(is_upright, whole.highest, least(whole.highest, height + slack))});
     }
-    const auto [low, high] = std::minmax_element(part.begin(), part.begin() + count,
-                                                 [](const Height& a, const Height& b) { return a.h < b.h; });
-    if (low->h > limit_ + kBlur || high->h < -limit_ - kBlur) return Part::beyond;
-    return low->h >= -limit_ && high->h <= limit_ ? Part::within : Part::across;
 }
 
 // Is a point of the triangle covered an odd number of times? No as well if that is hard to tell.
@@ -174,7 +144,6 @@ bool Column::is_odd_at(float share, float other_share) const {
     const Floats at_u(walls_[0].u + share * walls_[0].along - other_share * walls_[2].along),
         at_v(walls_[0].v + share * walls_[0].across - other_share * walls_[2].across);
     const Floats zero(0.0f), one(1.0f), blur(kBlur);
-    const auto size = [&](const Floats& a) { return greatest(a, zero - a); };
     int covered = 0;
     for (std::size_t first = 0; first < count_; first += kLanes) {
         const auto place = [&](std::size_t n) { return Floats(places_[n].data() + first); };
@@ -184,10 +153,10 @@ bool Column::is_odd_at(float share, float other_share) const {
             const Floats u = place(2 * n), v = place(2 * n + 1);
             const Floats along = place(2 * m) - u, across = place(2 * m + 1) - v;
             const Floats side = along * (at_v - v) - across * (at_u - u);
-            const Floats margin = blur * (one + size(along) + size(across));
+            const Floats margin = blur * (one + size_of(along) + size_of(across));
             left = left | (margin < side);
             right = right | (side < zero - margin);
-            close = close | (size(side) <= margin);
+            close = close | (size_of(side) <= margin);
         }
         const unsigned valid = count_ - first < kLanes ? (1u << (count_ - first)) - 1 : 255u;
         const unsigned over = ~(left & right).bits() & valid;

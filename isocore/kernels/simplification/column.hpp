@@ -27,10 +27,6 @@ class Column {
     float distance() const { return distance_; }
 
   private:
-    // A place in the frame: two coordinates in the plane, and the height above it.
-    struct Height {
-        float u, v, h;
-    };
     // A side of the triangle: where it begins, its way, and how far outside is still taken for inside.
     struct Wall {
         float u, v, along, across, blur;
@@ -41,13 +37,22 @@ class Column {
             return Number(along) * (at_v - Number(v)) - Number(across) * (at_u - Number(u));
         }
     };
-    enum class Part { none, within, beyond, across };
+    // Heights of eight parts: the lowest is above the highest where there is none.
+    struct Range {
+        Floats lowest, highest;
+
+        void add(const LaneMask<kRegisterLanes>& where, const Range& other) {
+            lowest = choose(where, least(lowest, other.lowest), lowest);
+            highest = choose(where, greatest(highest, other.highest), highest);
+        }
+    };
 
     void build_walls(const std::array<Spot, 3>& triangle);
     bool add_parts(const Patch& patch, std::size_t first);
-    unsigned has_low_plane(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const;
-    unsigned apart(const Vector<Floats>& u, const Vector<Floats>& v) const;
-    Part part_of(const std::array<Height, 3>& triangle) const;
+    // Of eight triangles, of which u, v and h of each corner are given: what of them lies in the column.
+    Range parts(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h) const;
+    void add_sides(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h, Range& out) const;
+    void add_corners(const Vector<Floats>& u, const Vector<Floats>& v, const Vector<Floats>& h, Range& out) const;
     bool is_odd_at(float share, float other_share) const;
 
     std::array<Wall, 3> walls_{};

@@ -62,9 +62,9 @@ class Patch {
     const float* column(std::size_t number) const { return numbers_.data() + number * room_; }
     float* column(std::size_t number) { return numbers_.data() + number * room_; }
 
-    std::size_t room_ = 0;             // of a column
-    std::vector<float> numbers_;       // column by column
-    std::vector<std::int32_t> found_;  // triangles of the reference
+    std::size_t room_ = 0;        // of a column
+    std::vector<float> numbers_;  // column by column
+    Array<std::int32_t> found_;   // triangles of the reference
 };
 
 }  // namespace isocore::simplification
