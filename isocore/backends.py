@@ -36,7 +36,7 @@ __all__ = [
 #: The backend that all others are compared with.
 REFERENCE = "mc"
 #: Milliseconds of one processor per million cells: to thin them, and to look at them all for one isovalue.
-_THINNING, _LOOKING = 285.0, 5.0
+_THINNING, _LOOKING = 250.0, 5.0
 #: By how many milliseconds a walk draws slower than a scan; with the surface, it grows like cells^(2/3), in millions.
 _WALKING = 1.5
 
