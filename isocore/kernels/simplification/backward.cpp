@@ -39,7 +39,7 @@ std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, co
 template <class Real>
 bool Backward<Real>::are_near(const Star& star, const Facets& facets, float limit) {
     limit_ = limit;
-    if (!proves_all_ && limit > kFarthest) {
+    if (!is_provable(limit)) {
         distances_.assign(star.face_count(), std::numeric_limits<float>::infinity());
         return true;
     }

@@ -25,6 +25,7 @@ class Backward {
     // infinity.
     void prove_all(bool all) { proves_all_ = all; }
     static constexpr float kFarthest = 4;  // cells
+    bool is_provable(float limit) const { return proves_all_ || limit <= kFarthest; }
 
     // Is it proved that all points of the star's faces lie within the limit of the reference? facets: star.draw()'s.
     bool are_near(const Star& star, const Facets& facets, float limit);

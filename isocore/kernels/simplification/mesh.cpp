@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/parallel.hpp"
+
 namespace isocore::simplification {
 namespace {
 
@@ -38,7 +40,7 @@ std::int32_t* RingRoom::take(std::size_t size) {
 
 template <class Real>
 Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch,
-                 double rounding)
+                 double rounding, int threads)
     : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])},
       rounding_(static_cast<float>(rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {
     for (std::size_t n = 0; n < 3 * input.triangle_count; ++n) {
@@ -48,7 +50,7 @@ Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::a
     number_vertices(input, cells);
     number_triangles(input);
     number_sheets(input);
-    find_rings();
+    find_rings(threads);
     add_planes();
 }
 
@@ -99,7 +101,7 @@ void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
 }
 
 template <class Real>
-void Mesh<Real>::find_rings() {
+void Mesh<Real>::find_rings(int threads) {
     vertices.resize(places.size());
     std::vector<std::size_t> starts(vertices.size() + 1);
     for (const Triangle& triangle : triangles) {
@@ -117,12 +119,15 @@ void Mesh<Real>::find_rings() {
         for (const std::int32_t corner : triangles[t].corners)
             rings_[starts[static_cast<std::size_t>(corner)]++] = static_cast<std::int32_t>(t);
     }
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        if (has_sheets())
-            order_fans(static_cast<std::int32_t>(v));  // sheets.cpp
-        else if (!vertices[v].odd)
-            order_ring(static_cast<std::int32_t>(v));
-    }
+    constexpr std::size_t kAtOnce = 16384;
+    parallel_for(threads, (vertices.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t some) {
+        for (std::size_t v = some * kAtOnce; v < std::min(vertices.size(), (some + 1) * kAtOnce); ++v) {
+            if (has_sheets())
+                order_fans(static_cast<std::int32_t>(v));  // sheets.cpp
+            else if (!vertices[v].odd)
+                order_ring(static_cast<std::int32_t>(v));
+        }
+    });
 }
 
 // Puts the triangles around a vertex in the order in which they follow each other.

@@ -70,7 +70,8 @@ class Mesh {
   public:
     // Vertices are renumbered by where they are, triangles by their first vertex, so that neighbours are close together
     // in memory. Throws std::invalid_argument if a triangle names a vertex that is not there.
-    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch, double rounding);
+    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch, double rounding,
+         int threads);
 
     std::size_t vertex_count() const { return vertices.size(); }
     // A place relative to another, stretched.
@@ -113,7 +114,7 @@ class Mesh {
   private:
     void number_vertices(const MeshArrays<Real>& input, const Cells& cells);
     void number_triangles(const MeshArrays<Real>& input);
-    void find_rings();
+    void find_rings(int threads);
     // How some triangles follow each other around a vertex: in a ring, or from one neighbour to another.
     struct Fan {
         bool open = false, odd = false;

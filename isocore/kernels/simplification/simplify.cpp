@@ -10,6 +10,7 @@
 
 #include "common/parallel.hpp"
 #include "simplification/contraction.hpp"
+#include "simplification/measuring.hpp"
 #include "simplification/sweeps.hpp"
 
 namespace isocore::simplification {
@@ -32,7 +33,7 @@ struct Surfaces {
              const Options& options) {
         parallel_for(options.threads, 2, [&](std::size_t n) {
             if (n == 0)
-                mesh = std::make_unique<Mesh<Real>>(input, cells, options.stretch, options.rounding);
+                mesh = std::make_unique<Mesh<Real>>(input, cells, options.stretch, options.rounding, options.threads);
             else
                 reference = std::make_unique<Reference<Real>>(stands_for, cells);
         });
@@ -104,7 +105,11 @@ class Simplification {
             }
         }
         out.facts.sheets.resize(input_.sheet_count);
-        measure(out.facts);
+        const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
+                         static_cast<float>(options_.other[2])};
+        std::vector<Backward<Real>*> provers;
+        for (auto& worker : workers_) provers.push_back(&worker->backward());
+        measure(mesh_, provers, limit_, other, out.facts);
         describe_sheets(out.facts);
         return out;
     }
@@ -173,62 +178,12 @@ class Simplification {
         });
     }
 
-    // Proves what is not proved yet, and measures how far each witness lies from its triangle.
-    void measure(Facts& facts) {
-        const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
-                         static_cast<float>(options_.other[2])};
-        const bool is_provable = std::isfinite(options_.max_error) || limit_ <= Backward<Real>::kFarthest;
-        const bool is_one_unit = other == mesh_.stretch();
-        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            if (mesh_.triangles[t].is_gone()) continue;
-            float& proved = mesh_.proved[t];
-            if (std::isinf(proved) && is_provable)
-                proved = workers_[0]->backward().distance(static_cast<std::int32_t>(t), limit_ - 1e-5f);
-            if (std::isinf(proved))
-                ++facts.unproved;
-            else
-                facts.back_max = std::max(facts.back_max, static_cast<double>(proved));
-            const Deviation error = measure(mesh_.triangles[t], mesh_.stretch());
-            const Deviation in_other = is_one_unit ? error : measure(mesh_.triangles[t], other);
-            facts.error.add(error);
-            facts.other.add(in_other);
-            if (!mesh_.has_sheets()) continue;
-            SheetFacts& sheet = facts.sheets[mesh_.sheet_of(static_cast<std::int32_t>(t))];
-            sheet.error.add(error);
-            sheet.other.add(in_other);
-            sheet.unproved += static_cast<std::size_t>(std::isinf(proved));
-            if (!std::isinf(proved)) sheet.back_max = std::max(sheet.back_max, static_cast<double>(proved));
-        }
-    }
-
     void describe_sheets(Facts& facts) const {
         for (std::size_t sheet = 0; sheet < facts.sheets.size(); ++sheet) {
             for (const auto& worker : workers_) {
                 for (std::size_t n = 0; n < kRules; ++n) facts.sheets[sheet].refused[n] += worker->refused()[sheet][n];
             }
         }
-    }
-
-    Deviation measure(const Triangle& triangle, const Spot& stretch) {
-        Deviation sum;
-        if (triangle.witness == kNone) return sum;
-        const auto& origin = mesh_.places[static_cast<std::size_t>(triangle.corners[0])].at;
-        const auto place = [&](std::int32_t number) {
-            const auto& at = mesh_.places[static_cast<std::size_t>(number)].at;
-            Spot out;
-            for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(at[a] - origin[a]) * stretch[a];
-            return out;
-        };
-        facet_.clear();
-        facet_.add({0, 0, 0}, place(triangle.corners[1]), place(triangle.corners[2]));
-        facet_.find_frames();
-        for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.places[static_cast<std::size_t>(w)].next) {
-            const Spot at = place(w);
-            const auto squared = static_cast<double>(facet_.from_points(0, {at[0], at[1], at[2]}).first());
-            if (!(squared >= 0)) continue;  // a triangle without an area
-            sum.add({std::sqrt(squared), std::sqrt(squared), squared});
-        }
-        return sum;
     }
 
     MeshArrays<Real> input_;
@@ -239,7 +194,6 @@ class Simplification {
     Mesh<Real>& mesh_;
     TriangleGrid grid_;
     std::vector<float> costs_;
-    Facets facet_;
     std::vector<std::unique_ptr<Contraction<Real>>> workers_;
 };
 
