@@ -70,7 +70,7 @@ void gather_large_triangles() {
     const MeshArrays<float> arrays{vertices.data(), 4, triangles.data(), 2};
     const auto cells = simplification::Cells::around(arrays, 1.0);
     const simplification::Reference<float> reference(arrays, cells);
-    const simplification::Mesh<float> mesh(arrays, cells, {1, 1, 1}, 0);
+    const simplification::Mesh<float> mesh(arrays, cells, {1, 1, 1}, 0, 1);
     CHECK(reference.repeats());
     simplification::Patch patch;
     patch.gather(reference, mesh, {0, 0, 0}, {{-1, -1, -1}, {6, 6, 6}}, 0);
