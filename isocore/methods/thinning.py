@@ -70,7 +70,7 @@ def _index_of(
     if outlook.index is not None:
         try:
             index = load_index(outlook.index, mesh)
-            return index, _checked(outlook.index, mesh, index), ()
+            return index, _checked(outlook.index, mesh, index, threads), ()
         except IsocoreError as error:
             warnings.append(f"{error}; thinned anew")
     index = build_index(mesh, threads)
@@ -87,10 +87,10 @@ def _index_of(
     return index, ready_index(mesh, index, threads, built=True), tuple(warnings)
 
 
-def _checked(path: Path, mesh: CellMesh, index: MeshIndex) -> _kernels.Index:
+def _checked(path: Path, mesh: CellMesh, index: MeshIndex, threads: int) -> _kernels.Index:
     """A loaded index, ready. Raises InputError where it names what is not there, whatever its checksum says."""
     try:
-        ready = ready_index(mesh, index)
+        ready = ready_index(mesh, index, threads)
         if not is_of(index, mesh):
             raise ValueError("it has other cells or values than the mesh")
         return ready
