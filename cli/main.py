@@ -107,7 +107,7 @@ def main() -> None:
     except click.ClickException as error:
         from .console import unarmed
 
-        error.message = unarmed(printable(error.message))  # type: ignore[misc]  # final for those who hand it on; here it ends
+        vars(error)["message"] = unarmed(printable(error.message))
         with suppress(OSError):
             error.show()
         code = WRONG_COMMAND

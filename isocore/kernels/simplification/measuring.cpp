@@ -90,17 +90,16 @@ void measure(Mesh<Real>& mesh, const std::vector<Backward<Real>*>& provers, floa
              Facts& facts) {
     const std::size_t count = mesh.triangles.size();
     std::vector<BySheet> found((count + kAtOnce - 1) / kAtOnce);
-    std::atomic<std::size_t> next{0};
-    parallel_for(static_cast<int>(provers.size()), provers.size(), [&](std::size_t worker) {
-        Measuring<Real> measuring(mesh, *provers[worker], limit, other);
-        for (std::size_t some = next++; some < found.size(); some = next++) {
-            for (std::size_t t = some * kAtOnce; t < std::min(count, (some + 1) * kAtOnce); ++t) {
-                if (mesh.triangles[t].is_gone()) continue;
-                const auto number = static_cast<std::int32_t>(t);
-                measuring.measure(number, of_sheet(mesh.sheet_of(number), found[some]));
-            }
+    std::atomic<std::size_t> taken{0};
+    const auto with_prover = [&] { return Measuring<Real>(mesh, *provers[taken++], limit, other); };
+    const auto measure_some = [&](Measuring<Real>& measuring, std::size_t some) {
+        for (std::size_t t = some * kAtOnce; t < std::min(count, (some + 1) * kAtOnce); ++t) {
+            if (mesh.triangles[t].is_gone()) continue;
+            const auto number = static_cast<std::int32_t>(t);
+            measuring.measure(number, of_sheet(mesh.sheet_of(number), found[some]));
         }
-    });
+    };
+    parallel_for(static_cast<int>(provers.size()), found.size(), with_prover, measure_some);
     // In their order: sums of floating-point numbers depend on it.
     for (const BySheet& some : found) {
         for (const auto& [sheet, of_it] : some) {

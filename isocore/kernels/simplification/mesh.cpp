@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/parallel.hpp"
+#include "common/parallel_each.hpp"
 
 namespace isocore::simplification {
 namespace {
@@ -120,13 +120,11 @@ void Mesh<Real>::find_rings(int threads) {
             rings_[starts[static_cast<std::size_t>(corner)]++] = static_cast<std::int32_t>(t);
     }
     constexpr std::size_t kAtOnce = 16384;
-    parallel_for(threads, (vertices.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t some) {
-        for (std::size_t v = some * kAtOnce; v < std::min(vertices.size(), (some + 1) * kAtOnce); ++v) {
-            if (has_sheets())
-                order_fans(static_cast<std::int32_t>(v));  // sheets.cpp
-            else if (!vertices[v].odd)
-                order_ring(static_cast<std::int32_t>(v));
-        }
+    parallel_each(threads, vertices.size(), kAtOnce, [&](std::size_t v) {
+        if (has_sheets())
+            order_fans(static_cast<std::int32_t>(v));  // sheets.cpp
+        else if (!vertices[v].odd)
+            order_ring(static_cast<std::int32_t>(v));
     });
 }
 

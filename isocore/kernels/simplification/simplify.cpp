@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/parallel.hpp"
+#include "common/parallel_each.hpp"
 #include "simplification/contraction.hpp"
 #include "simplification/measuring.hpp"
 #include "simplification/sweeps.hpp"
@@ -137,10 +138,7 @@ class Simplification {
     template <class Visit>
     void each_vertex(const Visit& visit) const {
         constexpr std::size_t kAtOnce = 16384;
-        const std::size_t count = mesh_.vertex_count();
-        parallel_for(options_.threads, (count + kAtOnce - 1) / kAtOnce, [&](std::size_t task) {
-            for (std::size_t v = task * kAtOnce; v < std::min(count, (task + 1) * kAtOnce); ++v) visit(v);
-        });
+        parallel_each(options_.threads, mesh_.vertex_count(), kAtOnce, visit);
     }
 
     // The vertices that may move, by the box that they lie in with all their neighbours.

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "common/parallel.hpp"
+#include "common/parallel_each.hpp"
 #include "simplification/outward.hpp"
 
 namespace isocore::simplification {
@@ -163,12 +163,9 @@ void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& refer
     };
     std::vector<std::int32_t> triangles(numbers.size());
     constexpr std::size_t kAtOnce = 4096;
-    parallel_for(threads, (numbers.size() + kAtOnce - 1) / kAtOnce, [&](std::size_t task) {
-        const std::size_t end = std::min(numbers.size(), (task + 1) * kAtOnce);
-        for (std::size_t n = task * kAtOnce; n < end; ++n) {
-            const std::array<Real, 3> at = place(n);
-            triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
-        }
+    parallel_each(threads, numbers.size(), kAtOnce, [&](std::size_t n) {
+        const std::array<Real, 3> at = place(n);
+        triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
     });
     // Those of one triangle follow each other in memory.
     std::vector<std::size_t> next(mesh.triangles.size() + 1);

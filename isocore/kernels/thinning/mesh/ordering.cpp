@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "common/check_numbers.hpp"
 #include "common/large_pages.hpp"
 #include "common/parallel.hpp"
 #include "common/prefetch.hpp"
@@ -127,9 +127,7 @@ OrderedField<Value> in_order(const mesh::Field<Value>& field, const std::int32_t
     constexpr std::size_t kAhead = 16;
     OrderedField<Value> ordered{large_array<double>(3 * size), large_array<Value>(size)};
     for_chunks(threads, size, [&](std::size_t, std::size_t first, std::size_t end) {
-        std::uint32_t largest = 0;  // a negative number is a large one here
-        for (std::size_t n = first; n < end; ++n) largest = std::max(largest, static_cast<std::uint32_t>(original[n]));
-        if (largest >= field.size) throw std::out_of_range("a number names no point");
+        check_numbers(original + first, end - first, field.size);
         for (std::size_t n = first; n < end; ++n) {
             if (n + kAhead < end) ISOCORE_PREFETCH(field.point(original[n + kAhead]));
             std::copy_n(field.point(original[n]), 3, ordered.points.data() + 3 * n);
