@@ -21,6 +21,7 @@ void test_tubes();
 void test_thinning();
 void test_joining();
 void test_clusters();
+void test_waves();
 
 int main() {
     test_bits();
@@ -43,5 +44,6 @@ int main() {
     test_thinning();
     test_joining();
     test_clusters();
+    test_waves();
     std::puts("kernels: all checks hold");
 }

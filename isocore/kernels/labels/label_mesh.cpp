@@ -14,8 +14,14 @@
 namespace isocore::labels {
 namespace {
 
-// Layers of cells per slab: the plane below a slab is surveyed a second time, which is one part in as many.
-constexpr std::size_t kLayers = 16;
+// How many layers of cells a slab has. The plane below each is surveyed a second time, so that slabs are thick; but
+// every thread has two of them.
+std::size_t layers_of_slab(std::size_t layers, int threads) {
+    constexpr std::size_t kLeast = 4, kMost = 16;
+    if (threads <= 1) return kMost;
+    const std::size_t slabs = 2 * static_cast<std::size_t>(threads);
+    return std::clamp((layers + slabs - 1) / slabs, kLeast, kMost);
+}
 
 // Writes a plane of ranks with background around it; planes before the first and after the last are background.
 template <class Sample, class Rank>
@@ -51,13 +57,13 @@ void place_slab(SlabMesh& slab, const Sizes& at, std::size_t middles_below, Labe
 template <class Rank, class Sample>
 std::vector<SlabMesh> draw_slabs(const GridView<Sample>& samples, const RankTable& ranks, int threads) {
     const Dims dims{samples.dims[0] + 2, samples.dims[1] + 2, samples.dims[2] + 2};
-    const std::size_t layers = dims[2] - 1;
-    std::vector<SlabMesh> slabs((layers + kLayers - 1) / kLayers);
+    const std::size_t layers = dims[2] - 1, thick = layers_of_slab(layers, threads);
+    std::vector<SlabMesh> slabs((layers + thick - 1) / thick);
     parallel_for(
         threads, slabs.size(), [&] { return Slab<Rank>(dims); },
         [&](Slab<Rank>& slab, std::size_t n) {
             const auto load = [&](std::size_t plane, Rank* out) { load_plane(samples, ranks, plane, out); };
-            slabs[n] = slab.draw(n * kLayers, std::min(layers, (n + 1) * kLayers), load);
+            slabs[n] = slab.draw(n * thick, std::min(layers, (n + 1) * thick), load);
         });
     return slabs;
 }

@@ -1,6 +1,7 @@
 // slab.cpp - One sweep through a slab: mark what is crossed, number it, draw the cells.
 #include "labels/slab.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -69,10 +70,13 @@ Slab<Rank>::Slab(const Dims& dims) : dims_(dims), row_(dims[0]), plane_(dims[0] 
     for (Plane* plane : {&low_, &high_}) {
         plane->ranks.assign(size, 0);
         plane->marks.assign(size, 0);
-        for (auto& numbers : plane->numbers) numbers.resize(size);
     }
     upright_marks_.assign(size, 0);
-    for (auto& numbers : upright_numbers_) numbers.resize(size);
+    numbers_ = large_array<Numbers>(3 * size);
+    std::fill(numbers_.begin(), numbers_.end(), Numbers{});
+    low_.numbers = numbers_.data();
+    high_.numbers = low_.numbers + size;
+    upright_numbers_ = high_.numbers + size;
 }
 
 // Slabs that follow one another are of much the same size.
@@ -163,7 +167,7 @@ void Slab<Rank>::number_plane(Plane& plane, std::size_t k, bool of_slab_before) 
     for_each_marked(plane.marks, [&](std::size_t at, std::size_t i, std::size_t j) {
         for (std::size_t n = 0; n < 3; ++n) {
             if (plane.marks[at] >> n & 1)
-                plane.numbers[n][at] = of_slab_before ? before++ : add_vertex(i, j, k, kElements[n]);
+                plane.numbers[at][n] = of_slab_before ? before++ : add_vertex(i, j, k, kElements[n]);
         }
     });
 }
@@ -173,7 +177,7 @@ void Slab<Rank>::number_layer(std::size_t k) {
     constexpr std::array<Element, 3> kElements{4, 5, 6};
     for_each_marked(upright_marks_, [&](std::size_t at, std::size_t i, std::size_t j) {
         for (std::size_t n = 0; n < 3; ++n) {
-            if (upright_marks_[at] >> n & 1) upright_numbers_[n][at] = add_vertex(i, j, k, kElements[n]);
+            if (upright_marks_[at] >> n & 1) upright_numbers_[at][n] = add_vertex(i, j, k, kElements[n]);
         }
     });
 }
@@ -228,14 +232,14 @@ void Slab<Rank>::write_cell(const CellDisks& disks, const CornerRanks& ranks, st
     const std::array<const Plane*, 2> plane{&low_, &high_};
     for (std::size_t n = 0; n < 4; ++n) {
         const std::size_t low = n & 1, high = n >> 1;
-        number[n] = plane[high]->numbers[0][at + low * row_];
-        number[4 + n] = plane[high]->numbers[1][at + low];
-        number[8 + n] = upright_numbers_[0][at + low + high * row_];
+        number[n] = plane[high]->numbers[at + low * row_][0];
+        number[4 + n] = plane[high]->numbers[at + low][1];
+        number[8 + n] = upright_numbers_[at + low + high * row_][0];
     }
     for (std::size_t side = 0; side < 2 && disks.faces != 0; ++side) {
-        number[12 + side] = upright_numbers_[2][at + side];
-        number[14 + side] = upright_numbers_[1][at + side * row_];
-        number[16 + side] = plane[side]->numbers[2][at];
+        number[12 + side] = upright_numbers_[at + side][2];
+        number[14 + side] = upright_numbers_[at + side * row_][1];
+        number[16 + side] = plane[side]->numbers[at][2];
     }
     number[kMiddle] = middle;
     const std::size_t before = mesh_.sides.size() / 2, count = disks.triangles.size();

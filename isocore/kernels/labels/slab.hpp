@@ -47,6 +47,8 @@ class Slab {
   public:
     // `dims`: samples with the layer of background, which is two more along each axis.
     explicit Slab(const Dims& dims);
+    Slab(const Slab&) = delete;
+    Slab& operator=(const Slab&) = delete;
 
     // Draws the layers of cells `first` to `last` - 1. load(plane, out) writes a plane's ranks, dims[0] * dims[1] of
     // them.
@@ -69,12 +71,13 @@ class Slab {
     }
 
   private:
+    using Numbers = std::array<std::int32_t, 3>;
     // Of each sample: is the edge to the next along x (bit 0) and along y (bit 1) crossed, and does the face between
     // them have a vertex (bit 2)? And the numbers of their vertices.
     struct Plane {
         std::vector<Rank> ranks;
         std::vector<std::uint8_t> marks;
-        std::array<std::vector<std::int32_t>, 3> numbers;  // along x, along y, in the face
+        Numbers* numbers;  // along x, along y, in the face
     };
 
     void make_room();
@@ -95,7 +98,8 @@ class Slab {
     std::size_t row_, plane_;  // samples of a row, of a plane
     Plane low_, high_;
     std::vector<std::uint8_t> upright_marks_;  // as a plane's, of edges along z, faces of axis 1 (bit 1) and 0 (bit 2)
-    std::array<std::vector<std::int32_t>, 3> upright_numbers_;
+    Numbers* upright_numbers_;
+    Array<Numbers> numbers_;  // of both planes and what stands between them, in one piece
     DiskCache cache_;
     SlabMesh mesh_;
     Sizes expected_;  // a little more than of the slab before
