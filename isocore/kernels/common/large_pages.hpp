@@ -1,5 +1,6 @@
 // large_pages.hpp - Asks the system for large pages, where it has any and knows how: a large array that is filled at
-// once costs fewer faults, and one that is read here and there costs fewer misses of address translation.
+// once costs fewer faults, and one that is read here and there costs fewer misses of address translation. And gives
+// pages back that are no longer used.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +10,9 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+#endif
+#if defined(__GLIBC__)
+#include <malloc.h>
 #endif
 
 namespace isocore {
@@ -33,6 +37,14 @@ Array<T> large_array(std::size_t size) {
     ask_for_large_pages(array);
     array.resize(size);
     return array;
+}
+
+// Gives back to the system what was freed: the C library keeps it otherwise, and what follows in other sizes comes on
+// top of it.
+inline void return_freed_memory() {
+#if defined(__GLIBC__)
+    static_cast<void>(malloc_trim(0));
+#endif
 }
 
 }  // namespace isocore

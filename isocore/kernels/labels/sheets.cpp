@@ -61,22 +61,25 @@ void count_vertices(const LabelMesh& mesh, Sheets& sheets) {
 
 }  // namespace
 
-Sheets find_sheets(const LabelMesh& mesh) {
+Sheets take_sheets(LabelMesh& mesh) {
     Sheets sheets;
     sheets.pairs = neighbours(mesh);
     number_triangles(mesh, sheets);
+    Array<std::uint32_t>().swap(mesh.sides);  // an empty list assigned would keep the memory
+    Array<std::int32_t>().swap(mesh.curves);
     count_vertices(mesh, sheets);
     return sheets;
 }
 
-void replace(LabelMesh& mesh, Array<float> vertices, Array<std::int32_t> triangles, const Array<std::int32_t>& kept,
-             const Array<std::int32_t>& left) {
+void replace(LabelMesh& mesh, const Sheets& sheets, Array<float> vertices, Array<std::int32_t> triangles,
+             const Array<std::int32_t>& kept, const Array<std::int32_t>& left) {
     Array<Element> elements(kept.size());
     std::transform(kept.begin(), kept.end(), elements.begin(),
                    [&](std::int32_t v) { return mesh.elements[static_cast<std::size_t>(v)]; });
     Array<std::uint32_t> sides(2 * left.size());
     for (std::size_t t = 0; t < left.size(); ++t)
-        std::copy_n(mesh.sides.data() + 2 * static_cast<std::size_t>(left[t]), 2, sides.data() + 2 * t);
+        std::copy_n(sheets.pairs.data() + 2 * std::size_t{sheets.of_triangles[static_cast<std::size_t>(left[t])]}, 2,
+                    sides.data() + 2 * t);
     mesh = {std::move(vertices), std::move(elements), std::move(triangles), std::move(sides), {}};
 }
 

@@ -16,11 +16,12 @@ struct Sheets {
     Array<std::uint32_t> triangles;     // of each sheet: how many it has
 };
 
-Sheets find_sheets(const LabelMesh& mesh);
+// Takes the sides and the curves from the mesh: a sheet's pair says as much as the sides of its triangles.
+Sheets take_sheets(LabelMesh& mesh);
 
-// Takes fewer triangles in the place of all. vertices, triangles: as in the mesh. kept, left: of each vertex and of
-// each triangle, its number so far.
-void replace(LabelMesh& mesh, Array<float> vertices, Array<std::int32_t> triangles, const Array<std::int32_t>& kept,
-             const Array<std::int32_t>& left);
+// Takes fewer triangles in the place of all, and gives them their sides. vertices, triangles: as in the mesh. kept,
+// left: of each vertex and of each triangle, its number so far.
+void replace(LabelMesh& mesh, const Sheets& sheets, Array<float> vertices, Array<std::int32_t> triangles,
+             const Array<std::int32_t>& kept, const Array<std::int32_t>& left);
 
 }  // namespace isocore::labels

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/large_pages.hpp"
 #include "labels/census.hpp"
 #include "labels/label_mesh.hpp"
 #include "labels/sheets.hpp"
@@ -67,7 +68,7 @@ class LabelSurfaces {
     LabelSurfaces(labels::LabelMesh mesh, std::size_t ranks) : mesh_(std::move(mesh)), ranks_(ranks) {}
 
     std::size_t vertices() const { return mesh_.elements.size(); }
-    std::size_t triangles() const { return mesh_.sides.size() / 2; }
+    std::size_t triangles() const { return mesh_.triangles.size() / 3; }
 
     void smooth(int rounds, int threads) {
         const nb::gil_scoped_release unlocked;
@@ -95,13 +96,15 @@ class LabelSurfaces {
             const nb::gil_scoped_release unlocked;
             const std::lock_guard<std::mutex> alone(one_at_a_time_);
             before = triangles();
-            sheets = labels::find_sheets(mesh_);
+            sheets = labels::take_sheets(mesh_);
+            return_freed_memory();
             const simplification::MeshArrays<float> arrays{mesh_.vertices.data(),      vertices(),
-                                                           mesh_.triangles.data(),     triangles(),
+                                                           mesh_.triangles.data(),     before,
                                                            sheets.of_triangles.data(), sheets.pairs.size() / 2};
             simplification::Simplified<float> fewer = simplification::simplify(arrays, arrays, options);
             facts = std::move(fewer.facts);
-            labels::replace(mesh_, std::move(fewer.vertices), std::move(fewer.triangles), fewer.kept, fewer.left);
+            labels::replace(mesh_, sheets, std::move(fewer.vertices), std::move(fewer.triangles), fewer.kept,
+                            fewer.left);
             solids_.reset();
         }
         return simplified_labels(to_numpy(std::move(sheets.pairs), 2), to_numpy(std::move(sheets.vertices)),

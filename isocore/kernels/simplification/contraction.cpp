@@ -183,6 +183,7 @@ void Contraction<Real>::commit() {
                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
     for (std::size_t p = 0; p < count_; ++p) draw_faces(parts_[p]);
     for (std::size_t p = 0; p < count_; ++p) join_ring(parts_[p].star);
+    room_.give_back(mesh_.vertices[centre].ring, mesh_.vertices[centre].count);
     mesh_.vertices[centre].count = 0;
     mesh_.vertices[centre].movable = false;
     for (std::size_t p = 0; p < count_; ++p) retire(parts_[p].star);
@@ -244,6 +245,7 @@ void Contraction<Real>::join_ring(const Star& star) {
     for (std::size_t n = 1; n + 1 < star.count; ++n) ring[count++] = star.triangles[n];
     const std::size_t others = target.is_joint ? 0 : is_row ? old - first : old;
     for (std::size_t n = vanishing; n < others; ++n) ring[count++] = target.ring[(first + n) % old];
+    room_.give_back(target.ring, old);
     target.ring = ring;
     target.count = static_cast<std::uint16_t>(count);
     target.failed = 0;

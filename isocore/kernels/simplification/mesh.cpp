@@ -1,10 +1,12 @@
 #include "simplification/mesh.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "common/large_pages.hpp"
 #include "common/parallel_each.hpp"
 
 namespace isocore::simplification {
@@ -29,13 +31,25 @@ std::uint64_t morton(const Cell& cell, int brick_bits) {
 }  // namespace
 
 std::int32_t* RingRoom::take(std::size_t size) {
-    constexpr std::size_t kBlock = 65536;
+    constexpr std::size_t kBlock = 16384, kTooLarge = 2;
+    for (std::size_t some = size; some < std::min(size + kTooLarge, free_.size()); ++some) {
+        std::int32_t* const ring = free_[some];
+        if (ring == nullptr) continue;
+        std::memcpy(&free_[some], ring, sizeof ring);
+        return ring;
+    }
     if (size > left_) {
         blocks_.push_back(std::unique_ptr<std::int32_t[]>(new std::int32_t[kBlock]));
         left_ = kBlock;
     }
     left_ -= size;
     return blocks_.back().get() + left_;
+}
+
+void RingRoom::give_back(std::int32_t* ring, std::size_t size) {
+    if (size >= free_.size() || size * sizeof *ring < sizeof ring) return;
+    std::memcpy(ring, &free_[size], sizeof ring);
+    free_[size] = ring;
 }
 
 template <class Real>
@@ -49,8 +63,8 @@ Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::a
     }
     number_vertices(input, cells);
     number_triangles(input);
-    number_sheets(input);
     find_rings(threads);
+    return_freed_memory();
     add_planes();
 }
 
@@ -63,14 +77,12 @@ void Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cel
         order[n] = {morton(cells.at(input.vertices + 3 * n), kBrickBits), static_cast<std::int32_t>(n)};
     std::sort(order.begin(), order.end());
     places.resize(count);
-    original.resize(count);
     renumbered_.resize(count);
     if (input.written != nullptr) written.resize(count);
     for (std::size_t n = 0; n < count; ++n) {
         const std::int32_t from = order[n].second;
         const Real* const place = input.vertices + 3 * static_cast<std::size_t>(from);
         places[n] = {{place[0], place[1], place[2]}, kNone};
-        original[n] = from;
         if (input.written != nullptr) {
             const double* const there = input.written + 3 * static_cast<std::size_t>(from);
             written[n] = {there[0], there[1], there[2]};
@@ -80,7 +92,8 @@ void Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cel
 }
 
 template <class Real>
-void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
+template <class Visit>
+void Mesh<Real>::each_number(const MeshArrays<Real>& input, const Visit& visit) const {
     const std::size_t count = input.triangle_count;
     const auto corner = [&](std::size_t n) { return renumbered_[static_cast<std::size_t>(input.triangles[n])]; };
     const auto lowest = [&](std::size_t t) {
@@ -89,35 +102,42 @@ void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
     std::vector<std::int32_t> next(input.vertex_count + 1);
     for (std::size_t t = 0; t < count; ++t) ++next[lowest(t) + 1];
     for (std::size_t v = 0; v < input.vertex_count; ++v) next[v + 1] += next[v];
-    triangles.resize(count);
-    original_triangles_.resize(count);
-    proved.resize(count);
+    for (std::size_t t = 0; t < count; ++t) visit(t, static_cast<std::size_t>(next[lowest(t)]++));
+}
+
+template <class Real>
+void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
+    triangles.resize(input.triangle_count);
+    proved.resize(input.triangle_count);
     std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
-    for (std::size_t t = 0; t < count; ++t) {
-        const auto to = static_cast<std::size_t>(next[lowest(t)]++);
+    if (input.sheets != nullptr) sheets_.resize(input.triangle_count);
+    const auto corner = [&](std::size_t n) { return renumbered_[static_cast<std::size_t>(input.triangles[n])]; };
+    each_number(input, [&](std::size_t t, std::size_t to) {
         triangles[to] = {{corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}, kNone};
-        original_triangles_[to] = static_cast<std::int32_t>(t);
-    }
+        if (input.sheets != nullptr) sheets_[to] = input.sheets[t];
+    });
 }
 
 template <class Real>
 void Mesh<Real>::find_rings(int threads) {
     vertices.resize(places.size());
-    std::vector<std::size_t> starts(vertices.size() + 1);
+    std::vector<std::uint32_t> counts(vertices.size());
     for (const Triangle& triangle : triangles) {
-        for (const std::int32_t corner : triangle.corners) ++starts[static_cast<std::size_t>(corner) + 1];
+        for (const std::int32_t corner : triangle.corners) ++counts[static_cast<std::size_t>(corner)];
     }
-    for (std::size_t v = 0; v < vertices.size(); ++v) starts[v + 1] += starts[v];
     rings_.resize(3 * triangles.size());
+    std::int32_t* next = rings_.data();
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-        vertices[v].ring = rings_.data() + starts[v];
-        const std::size_t count = starts[v + 1] - starts[v];
-        vertices[v].odd = count > Vertex::kMostTriangles;
-        vertices[v].count = static_cast<std::uint16_t>(std::min<std::size_t>(count, 65535));
+        vertices[v].ring = next;
+        next += counts[v];
+        vertices[v].odd = counts[v] > Vertex::kMostTriangles;
+        vertices[v].count = static_cast<std::uint16_t>(std::min<std::uint32_t>(counts[v], 65535));
     }
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (const std::int32_t corner : triangles[t].corners)
-            rings_[starts[static_cast<std::size_t>(corner)]++] = static_cast<std::int32_t>(t);
+    for (std::size_t t = triangles.size(); t-- > 0;) {  // the last comes last in its rings
+        for (const std::int32_t corner : triangles[t].corners) {
+            const auto v = static_cast<std::size_t>(corner);
+            vertices[v].ring[--counts[v]] = static_cast<std::int32_t>(t);
+        }
     }
     constexpr std::size_t kAtOnce = 16384;
     parallel_each(threads, vertices.size(), kAtOnce, [&](std::size_t v) {
@@ -126,6 +146,7 @@ void Mesh<Real>::find_rings(int threads) {
         else if (!vertices[v].odd)
             order_ring(static_cast<std::int32_t>(v));
     });
+    if (has_sheets()) note_curves();
 }
 
 // Puts the triangles around a vertex in the order in which they follow each other.
@@ -198,16 +219,13 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, Simplified<Real>& out) cons
         for (std::size_t a = 0; a < 3; ++a) out.vertices.push_back(input.vertices[3 * n + a]);
         out.kept.push_back(static_cast<std::int32_t>(n));
     }
-    std::vector<std::int32_t> by_original(input.triangle_count);
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-        by_original[static_cast<std::size_t>(original_triangles_[t])] = static_cast<std::int32_t>(t);
-    for (const std::int32_t t : by_original) {
-        const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
-        if (triangle.is_gone()) continue;
+    each_number(input, [&](std::size_t t, std::size_t number) {
+        const Triangle& triangle = triangles[number];
+        if (triangle.is_gone()) return;
         for (const std::int32_t corner : triangle.corners)
             out.triangles.push_back(numbers[static_cast<std::size_t>(corner)]);
-        if (has_sheets()) out.left.push_back(original_triangles_[static_cast<std::size_t>(t)]);
-    }
+        if (has_sheets()) out.left.push_back(static_cast<std::int32_t>(t));
+    });
 }
 
 template class Mesh<float>;

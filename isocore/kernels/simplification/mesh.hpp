@@ -2,6 +2,7 @@
 // reference's vertices that they answer for.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -55,12 +56,15 @@ struct Vertex {
     static constexpr std::size_t kMostTriangles = 62;  // around a vertex that may move, or to which another moves
 };
 
-// Room for rings: what is handed out stays until the room goes.
+// Room for rings: what is handed out stays until the room goes, or is given back and handed out again.
 class RingRoom {
   public:
     std::int32_t* take(std::size_t size);
+    // Whoever it was taken from.
+    void give_back(std::int32_t* ring, std::size_t size);
 
   private:
+    std::array<std::int32_t*, 64> free_{};  // by size: the first, in which the address of the next is kept
     std::vector<std::unique_ptr<std::int32_t[]>> blocks_;
     std::size_t left_ = 0;
 };
@@ -91,9 +95,8 @@ class Mesh {
     std::vector<Vertex> vertices;
     std::vector<Quadric> quadrics;
     Array<Triangle> triangles;
-    Array<float> proved;           // by triangle: how far its points lie from the reference, at most
-    Array<std::int32_t> original;  // the vertices' numbers in the input
-    Array<Point> written;          // where the vertices are written; none where they stay as they are
+    Array<float> proved;   // by triangle: how far its points lie from the reference, at most
+    Array<Point> written;  // where the vertices are written; none where they stay as they are
 
     // The sheet of a triangle; 0 where the mesh is not made of sheets.
     std::uint32_t sheet_of(std::int32_t triangle) const {
@@ -102,7 +105,8 @@ class Mesh {
     bool has_sheets() const { return !sheets_.empty(); }
     // The two neighbours on its curve that a vertex on one had in the input.
     const std::array<std::int32_t, 2>& along(std::int32_t vertex) const {
-        return along_[static_cast<std::size_t>(vertex)];
+        const auto found = std::lower_bound(on_curves_.begin(), on_curves_.end(), vertex);
+        return along_[static_cast<std::size_t>(found - on_curves_.begin())];
     }
     // Where the fans of a vertex on a curve end in its ring; returns how many there are.
     std::size_t find_fans(const Vertex& vertex, std::array<std::size_t, Vertex::kMostTriangles>& ends) const;
@@ -114,6 +118,9 @@ class Mesh {
   private:
     void number_vertices(const MeshArrays<Real>& input, const Cells& cells);
     void number_triangles(const MeshArrays<Real>& input);
+    // visit(triangle of the input, its number here) of all, in the input's order.
+    template <class Visit>
+    void each_number(const MeshArrays<Real>& input, const Visit& visit) const;
     void find_rings(int threads);
     // How some triangles follow each other around a vertex: in a ring, or from one neighbour to another.
     struct Fan {
@@ -123,16 +130,17 @@ class Mesh {
     Fan order_fan(std::int32_t vertex, std::int32_t* ring, std::size_t count) const;
     void order_ring(std::int32_t vertex);
     void order_fans(std::int32_t vertex);
-    void number_sheets(const MeshArrays<Real>& input);
+    void note_curves();
     void add_planes();
 
     Spot stretch_;
     float rounding_;
     Array<std::int32_t> renumbered_;  // by number in the input
-    Array<std::int32_t> original_triangles_;
     Array<std::int32_t> rings_;
-    Array<std::uint32_t> sheets_;                     // by triangle
-    std::vector<std::array<std::int32_t, 2>> along_;  // by vertex
+    Array<std::uint32_t> sheets_;  // by triangle
+    // The vertices on curves, in ascending order, and of each its two neighbours.
+    Array<std::int32_t> on_curves_;
+    Array<std::array<std::int32_t, 2>> along_;
 };
 
 }  // namespace isocore::simplification

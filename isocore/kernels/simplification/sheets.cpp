@@ -7,15 +7,6 @@
 
 namespace isocore::simplification {
 
-template <class Real>
-void Mesh<Real>::number_sheets(const MeshArrays<Real>& input) {
-    if (input.sheets == nullptr) return;
-    sheets_.resize(triangles.size());
-    for (std::size_t t = 0; t < sheets_.size(); ++t)
-        sheets_[t] = input.sheets[static_cast<std::size_t>(original_triangles_[t])];
-    along_.resize(places.size());
-}
-
 // A vertex inside a sheet has one ring. One on a curve has a fan of each sheet there, and all of them lie between the
 // same two neighbours.
 template <class Real>
@@ -43,7 +34,6 @@ void Mesh<Real>::order_fans(std::int32_t number) {
         if (n == 0) between = {low, high};
         if (fan.odd || !fan.open || between != std::array{low, high}) vertex.on_curve = false;
     }
-    along_[static_cast<std::size_t>(number)] = between;
     vertex.is_joint = vertex.odd = !vertex.on_curve;
 }
 
@@ -68,14 +58,33 @@ std::array<std::int32_t, 2> Mesh<Real>::ends_of(std::int32_t number) const {
 }
 
 template <class Real>
-void Mesh<Real>::add_curve_witnesses() {
+void Mesh<Real>::note_curves() {
     std::array<std::size_t, Vertex::kMostTriangles> ends;
+    std::size_t curves = 0, witnesses = 0;
+    for (const Vertex& vertex : vertices) {
+        if (!vertex.on_curve) continue;
+        ++curves;
+        witnesses += find_fans(vertex, ends);
+    }
+    on_curves_.reserve(curves);
+    along_.reserve(curves);
+    places.reserve(places.size() + witnesses);
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         if (!vertices[v].on_curve) continue;
-        const std::size_t fans = find_fans(vertices[v], ends);
+        on_curves_.push_back(static_cast<std::int32_t>(v));
+        along_.push_back(ends_of(static_cast<std::int32_t>(v)));
+    }
+}
+
+template <class Real>
+void Mesh<Real>::add_curve_witnesses() {
+    std::array<std::size_t, Vertex::kMostTriangles> ends;
+    for (const std::int32_t v : on_curves_) {
+        const auto number = static_cast<std::size_t>(v);
+        const std::size_t fans = find_fans(vertices[number], ends);
         for (std::size_t n = 0; n < fans; ++n) {
-            Triangle& triangle = triangles[static_cast<std::size_t>(vertices[v].ring[ends[n] - 1])];
-            places.push_back({places[v].at, triangle.witness});
+            Triangle& triangle = triangles[static_cast<std::size_t>(vertices[number].ring[ends[n] - 1])];
+            places.push_back({places[number].at, triangle.witness});
             triangle.witness = static_cast<std::int32_t>(places.size() - 1);
         }
     }
