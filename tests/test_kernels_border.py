@@ -66,6 +66,9 @@ DAMAGES = {
     "a point that does not": lambda index: _with_record(index, 2, -1),
     "a cell that does not exist": lambda index: _with_record(index, 5, 4 * len(index.tets.records)),
     "is not glued to it": lambda index: _with_record(index, 5, 0),
+    "the order of their lowest points": lambda index: replace(
+        index, tets=replace(index.tets, records=index.tets.records[::-1].copy())
+    ),
     "the skeleton names": lambda index: replace(
         index, tets=replace(index.tets, skeleton=index.tets.skeleton + len(index.tets.records))
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import meshes
 import numpy as np
 import numpy.typing as npt
@@ -178,6 +180,20 @@ def test_tetrahedra_and_hexahedra_in_one_mesh_share_their_vertices() -> None:
     random = np.random.default_rng(5)
     mesh = CellMesh(hexes.points, tets.tets[:24], hexes.hexes, random.random(len(hexes.points)))
     assert_same_as_full_scan(mesh)
+
+
+@KINDS
+def test_lots_of_cells_share_the_vertices_of_their_edges(hexes: bool) -> None:
+    """Noise in ten thousand cells; some, all over the mesh, share an edge with others, but no face."""
+    random = np.random.default_rng(11)
+    mesh = meshes.mesh_of(np.ones((15, 15, 15), bool), hexes=hexes)
+    cells = mesh.hexes if hexes else mesh.tets
+    edges = random.choice(cells, 2000)[:, :2]
+    others = np.hstack([edges, random.integers(0, len(mesh.points), (2000, 2), dtype=np.int32)])
+    distinct = (np.diff(np.sort(others, axis=1), axis=1) > 0).all(axis=1)
+    mesh = replace(mesh, tets=np.vstack([mesh.tets, others[distinct]]))
+    mesh = meshes.with_values(mesh, random.normal(size=len(mesh.points)))
+    assert_same_as_full_scan(meshes.shuffled(mesh, random), 2)
 
 
 def test_the_number_of_threads_does_not_change_a_byte() -> None:

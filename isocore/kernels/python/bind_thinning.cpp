@@ -109,13 +109,14 @@ class Index {
     }
 
   private:
-    // Calls work(field) for the mesh with its values, without the GIL.
+    // Calls work(field, scratch) for the mesh with its values, without the GIL.
     template <class Work>
-    auto with_field(const Work& work) const {
+    auto with_scratch(const Work& work) const {
         const nb::gil_scoped_release unlocked;
         return std::visit(
             [&]<class Value>(const Vector<Value>& values) {
-                return work(mesh::Field<std::remove_const_t<Value>>{points_.data(), values.data(), values.shape(0)});
+                const mesh::Field<std::remove_const_t<Value>> field{points_.data(), values.data(), values.shape(0)};
+                return scratches_.lend([&](thinning::Scratch& scratch) { return work(field, scratch); });
             },
             values_);
     }
@@ -128,16 +129,16 @@ class Index {
     }
 
     nb::object walk(double isovalue, const NamedTuple& visited_cells) const {
-        thinning::Visited visited =
-            with_field([&](const auto& field) { return thinning::walk(field, view_, isovalue); });
+        thinning::Visited visited = with_scratch(
+            [&](const auto& field, auto& scratch) { return thinning::walk(field, view_, isovalue, scratch); });
         return visited_cells(to_numpy(std::move(visited.tets)), to_numpy(std::move(visited.hexes)), visited.seeds);
     }
 
   private:
     template <class Coordinate>
     nb::object propagate_to(double isovalue, int threads, bool with_edges, const NamedTuple& walked_mesh) const {
-        thinning::Mesh<Coordinate> mesh = with_field([&](const auto& field) {
-            return thinning::propagate<Coordinate>(field, view_, isovalue, threads, with_edges);
+        thinning::Mesh<Coordinate> mesh = with_scratch([&](const auto& field, auto& scratch) {
+            return thinning::propagate<Coordinate>(field, view_, isovalue, threads, with_edges, scratch);
         });
         return walked_mesh(to_numpy(std::move(mesh.vertices), 3), to_numpy(std::move(mesh.triangles), 3), mesh.seeds,
                            mesh.visited, to_numpy(std::move(mesh.edges), 2));
@@ -149,6 +150,7 @@ class Index {
     PartArrays<kHexRecord> hexes_;
     Vector<std::int32_t> original_;
     thinning::IndexView view_;
+    mutable thinning::ScratchPool scratches_;
 };
 
 }  // namespace

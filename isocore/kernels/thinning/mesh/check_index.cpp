@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "thinning/mesh/thinning.hpp"
@@ -58,11 +59,14 @@ bool glued_both_ways(const PartView& part, size_t cell) {
 
 template <class Cell>
 void check_part(const PartView& part, size_t points) {
+    int32_t lowest = 0;
     for (size_t cell = 0; cell < part.cells; ++cell) {
         const int32_t *corners = part.records + kRecord<Cell> * cell, *twins = corners + Cell::kCorners;
         require(all_below(corners, Cell::kCorners, points), "a record names a point that does not exist");
         require(twins_exist(twins, Cell::kFaces, Cell::kFaces * part.cells),
                 "a record names a cell that does not exist");
+        const int32_t before = std::exchange(lowest, *std::min_element(corners, twins));
+        require(before <= lowest, "the cells are not in the order of their lowest points");
     }
     for (size_t cell = 0; cell < part.cells; ++cell) {
         require(glued_both_ways<Cell>(part, cell), "a record is glued to a cell that is not glued to it");

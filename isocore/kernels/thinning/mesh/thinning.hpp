@@ -15,6 +15,7 @@
 #include "common/mesh_field.hpp"
 #include "thinning/mesh/gluing.hpp"
 #include "thinning/mesh/records.hpp"
+#include "thinning/mesh/scratch.hpp"
 #include "thinning/mesh/thinner.hpp"
 
 namespace isocore::thinning {
@@ -53,8 +54,8 @@ struct IndexView {
     const std::int32_t* points;  // the mesh's id of every point of the index
 };
 
-// Throws std::invalid_argument unless all that the index names is there, cells are glued both ways, and the skeleton is
-// sorted by low. `points` is how many there are.
+// Throws std::invalid_argument unless all that the index names is there, cells are glued both ways and in the order of
+// their lowest points, and the skeleton is sorted by low. `points` is how many there are.
 void check_index(const IndexView& index, std::size_t points);
 
 template <class Coordinate>
@@ -66,10 +67,11 @@ struct Mesh {
     std::size_t visited = 0;        // cells walked, all of which it meets
 };
 
-// field: the points and values as the index numbers them. The index must be one that check_index accepts.
+// field: the points and values as the index numbers them. The index must be one that check_index accepts. No two calls
+// may share a scratch at a time.
 template <class Coordinate, class Value>
 Mesh<Coordinate> propagate(const mesh::Field<Value>& field, const IndexView& index, double isovalue, int threads,
-                           bool with_edges = false);
+                           bool with_edges, Scratch& scratch);
 
 // The cells that propagate would draw, ascending.
 struct Visited {
@@ -78,6 +80,6 @@ struct Visited {
 };
 
 template <class Value>
-Visited walk(const mesh::Field<Value>& field, const IndexView& index, double isovalue);
+Visited walk(const mesh::Field<Value>& field, const IndexView& index, double isovalue, Scratch& scratch);
 
 }  // namespace isocore::thinning

@@ -13,8 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "common/parallel.hpp"
+#include "common/corner_signs.hpp"
+#include "common/crew.hpp"
 #include "common/prefetch.hpp"
+#include "thinning/mesh/scratch.hpp"
 #include "thinning/mesh/shared_cells.hpp"
 #include "thinning/mesh/thinning.hpp"
 #include "thinning/range_lookup.hpp"
@@ -24,15 +26,15 @@ namespace isocore::thinning {
 template <class Cell, class Value>
 class Walk {
   public:
-    Walk(const mesh::Field<Value>& field, const PartView& part, double isovalue)
-        : field_(field),
-          part_(part),
-          isovalue_(isovalue),
-          inside_(isovalue, false),
-          visited_((part.cells + kWord - 1) / kWord) {}
+    Walk(const mesh::Field<Value>& field, const PartView& part, double isovalue, WalkScratch& scratch)
+        : field_(field), part_(part), isovalue_(isovalue), corner_signs_(isovalue), scratch_(scratch) {
+        const std::size_t words = (part.cells + kWord - 1) / kWord;
+        if (scratch.visited.size() != words) scratch.visited = std::vector<std::atomic<std::uint64_t>>(words);
+        scratch.cells.clear();
+    }
 
-    // Visits every cell that can be reached from the seeds.
-    void run(int threads) {
+    // Visits every cell that can be reached from the seeds, and leaves them in the scratch memory.
+    void run(Crew& crew) {
         Array<std::int32_t> lot;
         RangeLookup(part_.low, part_.high, part_.skeleton_size).find(isovalue_, [&](std::size_t n) {
             lot.push_back(part_.skeleton[n]);
@@ -42,34 +44,23 @@ class Walk {
         if (lot.empty()) return;
         SharedCells shared;
         shared.give(std::move(lot));
-        const auto walkers = static_cast<std::size_t>(std::max(1, threads));
-        parallel_for(threads, walkers, [&](std::size_t) {
-            shared.take_turns([&](Array<std::int32_t>& cells) { follow(cells, walkers == 1 ? nullptr : &shared); });
+        crew.together([&](std::size_t) {
+            shared.take_turns([&](Array<std::int32_t>& cells) { follow(cells, crew.size() == 1 ? nullptr : &shared); });
         });
+        collect();
     }
 
     std::size_t seeds() const { return seeds_; }
-
-    // The cells that the walk has visited, ascending.
-    Array<std::int32_t> visited_cells() const {
-        Array<std::int32_t> cells;
-        for (std::size_t word = 0; word < visited_.size() && seeds_ > 0; ++word) {
-            for (std::uint64_t left = visited_[word].load(std::memory_order_relaxed); left != 0; left &= left - 1) {
-                cells.push_back(
-                    static_cast<std::int32_t>(kWord * word + static_cast<std::size_t>(std::countr_zero(left))));
-            }
-        }
-        return cells;
-    }
+    std::size_t size() const { return scratch_.cells.size(); }
+    const std::int32_t* cells() const { return scratch_.cells.data(); }  // that were visited, ascending
 
     const std::int32_t* record(std::int32_t cell) const {
         return part_.records + kRecord<Cell> * static_cast<std::size_t>(cell);
     }
 
+    // Which corners of a cell are inside.
     mesh::Mask signs(const std::int32_t* corners) const {
-        mesh::Mask signs = 0;
-        for (std::size_t n = 0; n < Cell::kCorners; ++n) signs |= mesh::Mask{inside_(field_.value(corners[n]))} << n;
-        return signs;
+        return corner_signs_.template of<Cell>(field_.values, corners);
     }
 
     void prefetch_record(std::int32_t cell) const {
@@ -106,31 +97,33 @@ class Walk {
     std::size_t step(std::int32_t cell, std::int32_t* found, bool alone) {
         const std::int32_t *corners = record(cell), *twins = corners + Cell::kCorners;
         const mesh::Mask crossed = mesh::kCrossedFaces<Cell>[signs(corners)];
+        std::atomic<std::uint64_t>* const visited = scratch_.visited.data();
         std::size_t count = 0;
+        const auto look = [&](std::size_t face, bool mark) {
+            const auto twin = static_cast<std::uint32_t>(twins[face]), there = crossed >> face & ~(twin >> 31) & 1,
+                       next = (twin & -there) / Cell::kFaces;
+            std::atomic<std::uint64_t>& word = visited[next / kWord];
+            const std::uint64_t bit = std::uint64_t{there} << next % kWord,
+                                before = word.load(std::memory_order_relaxed);
+            if (mark) word.store(before | bit, std::memory_order_relaxed);
+            found[count] = static_cast<std::int32_t>(next);
+            count += (bit & ~before) != 0;
+        };
         if (alone) {
-            for (std::size_t n = 0; n < Cell::kFaces; ++n) {
-                const bool there = (crossed >> n & 1) & (twins[n] >= 0);
-                const std::uint32_t next = static_cast<std::uint32_t>(there ? twins[n] : 0) / Cell::kFaces;
-                std::atomic<std::uint64_t>& word = visited_[next / kWord];
-                const std::uint64_t bit = std::uint64_t{there} << next % kWord,
-                                    before = word.load(std::memory_order_relaxed);
-                word.store(before | bit, std::memory_order_relaxed);
-                found[count] = static_cast<std::int32_t>(next);
-                count += (bit & ~before) != 0;
-            }
+            for (std::size_t face = 0; face < Cell::kFaces; ++face) look(face, true);
             return count;
         }
-        for (std::size_t n = 0; n < Cell::kFaces; ++n) {
-            if (!(crossed >> n & 1) || twins[n] < 0) continue;
-            const std::int32_t next = twins[n] / static_cast<std::int32_t>(Cell::kFaces);
-            if (mark(next, false)) found[count++] = next;
+        for (std::size_t face = 0; face < Cell::kFaces; ++face) look(face, false);
+        const std::size_t perhaps = std::exchange(count, 0);
+        for (std::size_t n = 0; n < perhaps; ++n) {
+            if (mark(found[n], false)) found[count++] = found[n];
         }
         return count;
     }
 
     // Marks a cell as visited; returns whether it was not. Without other threads no atomic exchange is needed.
     bool mark(std::int32_t cell, bool alone) {
-        std::atomic<std::uint64_t>& word = visited_[static_cast<std::size_t>(cell) / kWord];
+        std::atomic<std::uint64_t>& word = scratch_.visited[static_cast<std::size_t>(cell) / kWord];
         const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(cell) % kWord,
                             before = word.load(std::memory_order_relaxed);
         if (before & bit) return false;
@@ -139,11 +132,24 @@ class Walk {
         return true;
     }
 
+    // Lists the visited cells, and leaves no bit behind.
+    void collect() {
+        for (std::size_t word = 0; word < scratch_.visited.size(); ++word) {
+            std::uint64_t left = scratch_.visited[word].load(std::memory_order_relaxed);
+            if (left == 0) continue;
+            scratch_.visited[word].store(0, std::memory_order_relaxed);
+            for (; left != 0; left &= left - 1) {
+                scratch_.cells.push_back(
+                    static_cast<std::int32_t>(kWord * word + static_cast<std::size_t>(std::countr_zero(left))));
+            }
+        }
+    }
+
     const mesh::Field<Value>& field_;
     const PartView& part_;
     double isovalue_;
-    Inside<Value> inside_;
-    std::vector<std::atomic<std::uint64_t>> visited_;
+    mesh::CornerSigns<Value> corner_signs_;
+    WalkScratch& scratch_;
     std::size_t seeds_ = 0;
 };
 
