@@ -72,17 +72,46 @@ void gather_large_triangles() {
     const simplification::Reference<float> reference(arrays, cells);
     const simplification::Mesh<float> mesh(arrays, cells, {1, 1, 1}, 0, 1);
     CHECK(reference.repeats());
+    simplification::Rows rows;
     simplification::Patch patch;
-    patch.gather(reference, mesh, {0, 0, 0}, {{-1, -1, -1}, {6, 6, 6}}, 0);
+    patch.gather(reference, rows, mesh, {0, 0, 0}, {{-1, -1, -1}, {6, 6, 6}}, 0);
     CHECK(patch.size() == 2);
-    patch.gather(reference, mesh, {0, 0, 0}, {{0.1f, 0.1f, 0}, {1.5f, 0.9f, 0.2f}}, 0);
+    patch.gather(reference, rows, mesh, {0, 0, 0}, {{0.1f, 0.1f, 0}, {1.5f, 0.9f, 0.2f}}, 0);
     CHECK(patch.size() == 2);
+}
+
+// Copies are what the reference has, in its order.
+void gather_from_rows() {
+    const Volume volume = volume_of(1, {70, 9, 8});
+    const auto marched = marching_cubes::march<float, float>({volume.samples.data(), volume.dims}, {});
+    const MeshArrays<float> arrays{marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(),
+                                   marched.triangles.size() / 3};
+    const auto cells = simplification::Cells::around(arrays, 1.0);
+    const simplification::Reference<float> reference(arrays, cells);
+    const simplification::Mesh<float> mesh(arrays, cells, {1, 0.7, 0.4}, 0, 1);
+    simplification::Rows none, rows;
+    rows.cover({3, 0, 1}, {60, 6, 5});
+    simplification::Patch read, copied;
+    for (std::int32_t i = 4; i < 50; i += 3) {
+        const std::array<float, 3> origin{static_cast<float>(i), 3, 3};
+        const simplification::Box box{{-0.9f, -1.3f, -0.7f}, {static_cast<float>(i % 9), 2, 0.6f}};
+        read.gather(reference, none, mesh, origin, box, 0);
+        copied.gather(reference, rows, mesh, origin, box, 0);
+        CHECK(read.size() > 0 && read.size() == copied.size());
+        for (std::size_t n = 0; n < 3 * read.size(); ++n)
+            CHECK(read.corner(n / 3, n % 3) == copied.corner(n / 3, n % 3));
+        for (std::size_t n = 0; n < read.size(); n += kLanes) {
+            const unsigned there = read.size() - n < kLanes ? (1u << (read.size() - n)) - 1 : 255u;
+            CHECK((read.at_border(n) & there) == (copied.at_border(n) & there));
+        }
+    }
 }
 
 }  // namespace
 
 void test_simplification() {
     gather_large_triangles();
+    gather_from_rows();
     for (int seed = 0; seed < 30; ++seed) simplify<float>(seed, {9, 8, 7}, 0.2 + 0.2 * (seed % 4), 0);
     for (int seed = 0; seed < 3; ++seed) simplify<double>(seed, {12, 13, 12}, 0.5, 0);
     for (int seed = 0; seed < 3; ++seed) simplify<float>(seed, {9, 9, 9}, std::numeric_limits<double>::infinity(), 20);

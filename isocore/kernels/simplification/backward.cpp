@@ -36,6 +36,23 @@ std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, co
 
 }  // namespace
 
+// Copies pay where they are read many times, and the limit is small beside a box.
+template <class Real>
+void Backward<Real>::enter_box(const Cell& low, const Cell& high, float limit) {
+    leave_box();
+    if (!reference_.is_in_order() || reference_.mesh().sheets != nullptr || limit > kFarthest) return;
+    const Cells& cells = reference_.cells();
+    Cell from, to;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto margin =
+            static_cast<std::int32_t>((limit + kBoxMargin) / mesh_.stretch()[a] * static_cast<float>(cells.per_cell)) +
+            2;
+        from[a] = std::max(low[a] - margin, 0);
+        to[a] = std::min(high[a] + margin, static_cast<std::int32_t>(cells.dims[a]) - 1);
+    }
+    if (to[0] - from[0] < Rows::kMostCells) rows_.cover(from, to);
+}
+
 template <class Real>
 bool Backward<Real>::are_near(const Star& star, const Facets& facets, float limit) {
     limit_ = limit;
@@ -47,7 +64,8 @@ bool Backward<Real>::are_near(const Star& star, const Facets& facets, float limi
     const auto face = [&](std::size_t n) { return Corners{star.place(0), star.place(n), star.place(n + 1)}; };
     Box box = Box::around(face(1), margin);
     for (std::size_t n = 2; n + 1 < star.count; ++n) box.add(Box::around(face(n), margin));
-    near_star_.gather(reference_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box, star.sheet);
+    near_star_.gather(reference_, rows_, mesh_, mesh_.places[static_cast<std::size_t>(star.centre)].at, box,
+                      star.sheet);
     // A star is refused for one face, so those come first that leave most of the vertex's height.
     order_.clear();
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
@@ -69,7 +87,8 @@ float Backward<Real>::distance(std::int32_t triangle, float limit) {
     const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
     const auto place = [&](std::size_t n) { return mesh_.places[static_cast<std::size_t>(corners[n])].at; };
     const Corners face{Spot{0, 0, 0}, mesh_.relative(place(1), place(0)), mesh_.relative(place(2), place(0))};
-    near_star_.gather(reference_, mesh_, place(0), Box::around(face, limit + kBoxMargin), mesh_.sheet_of(triangle));
+    near_star_.gather(reference_, rows_, mesh_, place(0), Box::around(face, limit + kBoxMargin),
+                      mesh_.sheet_of(triangle));
     frame_.clear();
     frame_.add(face[0], face[1], face[2]);
     frame_.find_frames();

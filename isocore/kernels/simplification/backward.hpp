@@ -27,6 +27,11 @@ class Backward {
     static constexpr float kFarthest = 4;  // cells
     bool is_provable(float limit) const { return proves_all_ || limit <= kFarthest; }
 
+    // Stars are now asked about whose vertices lie in these cells, both included.
+    void enter_box(const Cell& low, const Cell& high, float limit);
+    // Or anywhere.
+    void leave_box() { rows_.forget(); }
+
     // Is it proved that all points of the star's faces lie within the limit of the reference? facets: star.draw()'s.
     bool are_near(const Star& star, const Facets& facets, float limit);
     // Of each face of that star: how far its points lie from the reference, at most.
@@ -52,6 +57,7 @@ class Backward {
     const Mesh<Real>& mesh_;
     bool proves_all_ = true;
     float limit_ = 0;
+    Rows rows_;
     Patch near_star_;
     std::array<Patch, 4> near_;  // by depth
     std::vector<float> distances_;

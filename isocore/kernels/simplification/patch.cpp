@@ -44,9 +44,43 @@ void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& 
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
 }
 
+// Eight at once.
+void Patch::gather_rows(const Reference<float>& reference, Rows& rows, const Mesh<float>& mesh,
+                        const std::array<float, 3>& origin, const Cell& low, const Cell& high) {
+    found_.clear();  // of each run: where it begins, and how many triangles it has
+    rows.each_run_between(reference, low, high, [&](std::uint32_t from, std::uint32_t count) {
+        found_.push_back(static_cast<std::int32_t>(from));
+        found_.push_back(static_cast<std::int32_t>(count));
+        const float* const numbers = rows.eight(from / kLanes * kLanes);
+        constexpr std::size_t kPerLine = 16;
+        for (std::size_t n = 0; n < kLanes * kColumns; n += kPerLine) ISOCORE_PREFETCH(numbers + n);
+    });
+    Vector<Floats> zero, by;
+    for (std::size_t a = 0; a < 3; ++a) {
+        zero[a] = Floats(origin[a]);
+        by[a] = Floats(mesh.stretch()[a]);
+    }
+    size_ = 0;
+    for (std::size_t n = 0; n < found_.size(); n += 2) {
+        auto from = static_cast<std::size_t>(found_[n]);
+        const std::size_t count = static_cast<std::size_t>(found_[n + 1]), end = from + count;
+        if (size_ + count + 2 * kLanes > room_) make_room(2 * (size_ + count) + 16 * kLanes);
+        while (from < end) {
+            const std::size_t lane = from % kLanes, taken = std::min(kLanes - lane, end - from);
+            const float* const source = rows.eight(from - lane) + lane;
+            for (std::size_t c = 0; c < Rows::kBorder; ++c)
+                ((Floats(source + c * kLanes) - zero[c % 3]) * by[c % 3]).store(column(c) + size_);
+            Floats(source + Rows::kBorder * kLanes).store(column(kBorder) + size_);
+            size_ += taken;
+            from += taken;
+        }
+    }
+    end();
+}
+
 template <class Real>
-void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
-                   const Box& box, std::uint32_t sheet) {
+void Patch::gather(const Reference<Real>& reference, Rows& rows, const Mesh<Real>& mesh,
+                   const std::array<Real, 3>& origin, const Box& box, std::uint32_t sheet) {
     const Cells& cells = reference.cells();
     Cell low, high;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -56,6 +90,9 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
         };
         low[a] = cell(box.low[a]);
         high[a] = cell(box.high[a]);
+    }
+    if constexpr (std::is_same_v<Real, float>) {
+        if (rows.cover_all(low, high)) return gather_rows(reference, rows, mesh, origin, low, high);
     }
     find(reference, low, high);
     for (const std::int32_t triangle : found_) ISOCORE_PREFETCH(reference.place(reference.corners(triangle)[1]));
@@ -92,10 +129,10 @@ void Patch::gather(const Reference<Real>& reference, const Mesh<Real>& mesh, con
     end();
 }
 
-template void Patch::gather(const Reference<float>&, const Mesh<float>&, const std::array<float, 3>&, const Box&,
+template void Patch::gather(const Reference<float>&, Rows&, const Mesh<float>&, const std::array<float, 3>&, const Box&,
                             std::uint32_t);
-template void Patch::gather(const Reference<double>&, const Mesh<double>&, const std::array<double, 3>&, const Box&,
-                            std::uint32_t);
+template void Patch::gather(const Reference<double>&, Rows&, const Mesh<double>&, const std::array<double, 3>&,
+                            const Box&, std::uint32_t);
 
 // Which of eight triangles have boxes that touch this one.
 unsigned Patch::touching(std::size_t first, const Box& box) const {

@@ -10,6 +10,7 @@
 #include "common/facets.hpp"
 #include "common/lanes.hpp"
 #include "simplification/reference.hpp"
+#include "simplification/rows.hpp"
 
 namespace isocore::simplification {
 
@@ -23,9 +24,10 @@ struct Box {
 class Patch {
   public:
     std::size_t size() const { return size_; }
-    // Takes all triangles of a sheet in cells that touch a box around `origin`, each once.
+    // Takes all triangles of a sheet in cells that touch a box around `origin`, each once; from the rows, if they cover
+    // it.
     template <class Real>
-    void gather(const Reference<Real>& reference, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
+    void gather(const Reference<Real>& reference, Rows& rows, const Mesh<Real>& mesh, const std::array<Real, 3>& origin,
                 const Box& box, std::uint32_t sheet);
     // Takes those of another patch, or of this one, whose boxes touch this one.
     void select(const Patch& from, const Box& box);
@@ -47,6 +49,8 @@ class Patch {
   private:
     static constexpr std::size_t kBorder = 9, kColumns = 10;
 
+    void gather_rows(const Reference<float>& reference, Rows& rows, const Mesh<float>& mesh,
+                     const std::array<float, 3>& origin, const Cell& low, const Cell& high);
     template <class Real>
     void find(const Reference<Real>& reference, const Cell& low, const Cell& high);
     void make_room(std::size_t size);

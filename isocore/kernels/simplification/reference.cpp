@@ -24,10 +24,6 @@ Reference<Real>::Reference(const MeshArrays<Real>& mesh, const Cells& cells) : m
         ranks_[w] = rank;
         rank += static_cast<std::uint32_t>(std::popcount(occupied_[w]));
     }
-    const auto rank_of = [&](std::size_t cell) {
-        const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
-        return ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below));
-    };
     starts_.assign(rank + 1, 0);
     each_entry([&](std::int32_t, std::size_t cell) { ++starts_[rank_of(cell) + 1]; });
     for (std::size_t n = 0; n < rank; ++n) starts_[n + 1] += starts_[n];

@@ -35,8 +35,22 @@ class Reference {
             }
         }
     }
+    // Which of up to 63 cells of a row from `cell` on have entries, a bit for each; where those of each such cell
+    // start; and, one further, where they end.
+    struct Occupied {
+        std::uint64_t bits;
+        const std::uint32_t* starts;
+    };
+    Occupied occupied(const Cell& cell, std::int32_t count) const {
+        const std::size_t first = number(cell), shift = first % 64;
+        std::uint64_t bits = occupied_[first / 64] >> shift;
+        if (shift > 0) bits |= occupied_[first / 64 + 1] << (64 - shift);
+        return {bits & ((std::uint64_t{1} << count) - 1), starts_.data() + rank_of(first)};
+    }
     // May a triangle have several entries?
     bool repeats() const { return entries_.size() > mesh_.triangle_count; }
+    // Is entry n triangle n?
+    bool is_in_order() const { return entries_.empty(); }
     // The triangle of an entry.
     std::int32_t entry(std::uint32_t number) const {
         return entries_.empty() ? static_cast<std::int32_t>(number) : entries_[number];
@@ -66,11 +80,13 @@ class Reference {
                cells_.dims[0] *
                    (static_cast<std::size_t>(cell[1]) + cells_.dims[1] * static_cast<std::size_t>(cell[2]));
     }
-    // The first entry of this cell or of a later one.
-    std::uint32_t first_of(std::size_t cell) const {
+    // How many occupied cells come before this one.
+    std::uint32_t rank_of(std::size_t cell) const {
         const std::uint64_t below = occupied_[cell / 64] & ((std::uint64_t{1} << cell % 64) - 1);
-        return starts_[ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below))];
+        return ranks_[cell / 64] + static_cast<std::uint32_t>(std::popcount(below));
     }
+    // The first entry of this cell or of a later one.
+    std::uint32_t first_of(std::size_t cell) const { return starts_[rank_of(cell)]; }
     template <class Visit>
     void each_entry(const Visit& visit) const;
     void find_border();

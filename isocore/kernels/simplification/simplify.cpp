@@ -67,8 +67,10 @@ class Simplification {
         const std::vector<std::vector<std::int32_t>> boxes = find_boxes(kShifts[static_cast<std::size_t>(phase)]);
         std::atomic<std::size_t> next{0};
         parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
-            for (std::size_t box = next++; box < boxes.size(); box = next++)
+            for (std::size_t box = next++; box < boxes.size(); box = next++) {
+                enter_box(boxes[box], phase, workers_[worker]->backward());
                 sweep(boxes[box], mesh_, *workers_[worker], costs_, std::numeric_limits<std::size_t>::max());
+            }
         });
     }
 
@@ -124,14 +126,31 @@ class Simplification {
         return sum;
     }
 
+    // Some triangles' cubes at a time; each thread enters those that are its own.
     void enter_triangles() {
-        TriangleGrid::Spare spare;
-        std::vector<std::int32_t> cubes;
-        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            cubes.clear();
-            grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
-            grid_.enter(static_cast<std::int32_t>(t), cubes, spare);
-        }
+        constexpr std::size_t kAtOnce = 4096;
+        const std::size_t count = mesh_.triangles.size(), shares = workers_.size();
+        std::vector<std::vector<std::array<std::int32_t, 2>>> all((count + kAtOnce - 1) / kAtOnce);
+        const auto find_cubes = [&](std::size_t n) {
+            std::vector<std::int32_t> cubes;
+            for (std::size_t t = n * kAtOnce; t < std::min(count, (n + 1) * kAtOnce); ++t) {
+                cubes.clear();
+                grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
+                for (const std::int32_t cube : cubes) all[n].push_back({cube, static_cast<std::int32_t>(t)});
+            }
+        };
+        if (shares > 1) parallel_for(options_.threads, all.size(), find_cubes);
+        parallel_for(options_.threads, shares, [&](std::size_t share) {
+            TriangleGrid::Spare spare;
+            for (std::size_t n = 0; n < all.size(); ++n) {
+                if (shares == 1) find_cubes(n);
+                for (const auto& [cube, triangle] : all[n]) {
+                    if (static_cast<std::size_t>(cube) * shares / grid_.cube_count() == share)
+                        grid_.enter(triangle, {&cube, 1}, spare);
+                }
+                if (shares == 1) all[n] = {};
+            }
+        });
     }
 
     // visit(vertex) of all, by all threads.
@@ -166,6 +185,19 @@ class Simplification {
         std::stable_sort(boxes.begin(), boxes.end(),
                          [](const auto& one, const auto& other) { return one.size() > other.size(); });
         return boxes;
+    }
+
+    // vertices: those of the box. The last phases change too little for copies to pay.
+    void enter_box(const std::vector<std::int32_t>& vertices, int phase, Backward<Real>& backward) const {
+        constexpr int kPhasesWithCopies = 2;
+        if (phase >= kPhasesWithCopies) return backward.leave_box();
+        Cell low = cells_.at(mesh_.places[static_cast<std::size_t>(vertices.front())].at.data()), high{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::int32_t shift = kShifts[static_cast<std::size_t>(phase)][a] * kBoxCells / 4;
+            low[a] = (low[a] + shift) / kBoxCells * kBoxCells - shift;
+            high[a] = low[a] + kBoxCells - 1;
+        }
+        backward.enter_box(low, high, limit_);
     }
 
     bool has_ring_in_box(const Vertex& vertex, std::uint32_t box, const std::vector<std::uint32_t>& box_of) const {

@@ -68,7 +68,7 @@ void TriangleGrid::add_chunk(Spare& spare) {
     spare.first = start;
 }
 
-void TriangleGrid::enter(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare) {
+void TriangleGrid::enter(std::int32_t triangle, std::span<const std::int32_t> cubes, Spare& spare) {
     for (const std::int32_t cube : cubes) enter(triangle, first_[static_cast<std::size_t>(cube)], spare);
 }
 

@@ -37,7 +37,7 @@ class TriangleGrid {
     template <class Real>
     void cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::vector<std::int32_t>& out) const;
 
-    void enter(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare);
+    void enter(std::int32_t triangle, std::span<const std::int32_t> cubes, Spare& spare);
     void remove(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare);
     // Takes a triangle from the cubes that it touched to those that it touches now, both as cubes_of() found them.
     void move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to,
