@@ -173,14 +173,34 @@ bool Contraction<Real>::keeps_curve(const Star& star) const {
     return true;
 }
 
+// Until a neighbour of a vertex goes, its triangles are the input's: so a quadric is the same whenever it is made.
+template <class Real>
+void Contraction<Real>::make_quadrics(const std::vector<std::int32_t>& numbers) {
+    const auto make = [&](std::int32_t number) {
+        Quadric*& quadric = mesh_.quadrics[static_cast<std::size_t>(number)];
+        if (quadric != nullptr) return;
+        quadric = quadric_room_.take();
+        *quadric = mesh_.planes_around(number);
+    };
+    for (const std::int32_t number : numbers) {
+        const Vertex& vertex = mesh_.vertices[static_cast<std::size_t>(number)];
+        for (std::size_t n = 0; n < vertex.count; ++n) {
+            for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(vertex.ring[n])].corners)
+                make(corner);
+        }
+    }
+}
+
 template <class Real>
 void Contraction<Real>::commit() {
     ++collapses;
     const auto centre = static_cast<std::size_t>(parts_[0].star.centre),
                target = static_cast<std::size_t>(parts_[0].star.target());
     for (std::size_t p = 0; p < count_; ++p) take_out(parts_[p]);
-    mesh_.quadrics[target].add(mesh_.quadrics[centre],
-                               mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
+    mesh_.quadrics[target]->add(*mesh_.quadrics[centre],
+                                mesh_.relative(mesh_.places[target].at, mesh_.places[centre].at));
+    quadric_room_.give_back(mesh_.quadrics[centre]);
+    mesh_.quadrics[centre] = nullptr;
     for (std::size_t p = 0; p < count_; ++p) draw_faces(parts_[p]);
     for (std::size_t p = 0; p < count_; ++p) join_ring(parts_[p].star);
     room_.give_back(mesh_.vertices[centre].ring, mesh_.vertices[centre].count);

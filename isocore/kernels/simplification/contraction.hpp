@@ -30,6 +30,8 @@ class Contraction {
     // Contracts the edge from the ring's centre to its neighbour `target` onto that neighbour. False if a rule forbids
     // it; then nothing has changed. Of a vertex on a curve, the ring holds nothing but the neighbours there.
     bool contract(const Ring& ring, std::size_t target);
+    // The quadrics of some vertices that may move and of their neighbours, where they are not there yet.
+    void make_quadrics(const std::vector<std::int32_t>& vertices);
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
     float limit() const { return limit_; }
@@ -80,6 +82,7 @@ class Contraction {
     Backward<Real> backward_;
     Crossings<Real> crossings_;
     RingRoom room_;
+    QuadricRoom quadric_room_;
     TriangleGrid::Spare spare_;
     std::vector<std::int32_t> cubes_;
     std::vector<std::array<std::size_t, kRules>> refused_;

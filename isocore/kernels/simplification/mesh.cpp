@@ -52,6 +52,17 @@ void RingRoom::give_back(std::int32_t* ring, std::size_t size) {
     free_[size] = ring;
 }
 
+Quadric* QuadricRoom::take() {
+    constexpr std::size_t kBlock = 1024;
+    if (free_.empty()) {
+        blocks_.push_back(std::make_unique<Quadric[]>(kBlock));
+        for (std::size_t n = kBlock; n-- > 0;) free_.push_back(blocks_.back().get() + n);
+    }
+    Quadric* const out = free_.back();
+    free_.pop_back();
+    return out;
+}
+
 template <class Real>
 Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch,
                  double rounding, int threads)
@@ -65,7 +76,7 @@ Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::a
     number_triangles(input);
     find_rings(threads);
     return_freed_memory();
-    add_planes();
+    quadrics.resize(vertices.size());
 }
 
 template <class Real>
@@ -198,15 +209,21 @@ auto Mesh<Real>::order_fan(std::int32_t number, std::int32_t* ring, std::size_t 
 }
 
 template <class Real>
-void Mesh<Real>::add_planes() {
-    quadrics.resize(vertices.size());
-    for (const Triangle& triangle : triangles) {
-        for (std::size_t n = 0; n < 3; ++n) {
-            const auto corner = [&](std::size_t m) { return static_cast<std::size_t>(triangle.corners[(n + m) % 3]); };
-            quadrics[corner(0)].add(relative(places[corner(1)].at, places[corner(0)].at),
-                                    relative(places[corner(2)].at, places[corner(0)].at));
-        }
+Quadric Mesh<Real>::planes_around(std::int32_t number) const {
+    const Vertex& vertex = vertices[static_cast<std::size_t>(number)];
+    const auto& own = places[static_cast<std::size_t>(number)].at;
+    // Sums of floats depend on their order, which is that of the triangles' numbers.
+    std::vector<std::int32_t> ring(vertex.ring, vertex.ring + vertex.count);
+    std::sort(ring.begin(), ring.end());
+    Quadric out;
+    for (const std::int32_t t : ring) {
+        const Triangle& triangle = triangles[static_cast<std::size_t>(t)];
+        const std::size_t index = triangle.index_of(number);
+        const std::int32_t next = triangle.after(index), last = triangle.after(index == 2 ? 0 : index + 1);
+        out.add(relative(places[static_cast<std::size_t>(next)].at, own),
+                relative(places[static_cast<std::size_t>(last)].at, own));
     }
+    return out;
 }
 
 template <class Real>

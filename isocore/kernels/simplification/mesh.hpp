@@ -69,6 +69,17 @@ class RingRoom {
     std::size_t left_ = 0;
 };
 
+// Room for quadrics, likewise.
+class QuadricRoom {
+  public:
+    Quadric* take();
+    void give_back(Quadric* quadric) { free_.push_back(quadric); }
+
+  private:
+    std::vector<std::unique_ptr<Quadric[]>> blocks_;
+    std::vector<Quadric*> free_;
+};
+
 template <class Real>
 class Mesh {
   public:
@@ -93,7 +104,7 @@ class Mesh {
 
     Array<Place<Real>> places;  // of the vertices, then of the reference's other vertices
     std::vector<Vertex> vertices;
-    std::vector<Quadric> quadrics;
+    std::vector<Quadric*> quadrics;  // of vertices that have been looked at, or could be a target
     Array<Triangle> triangles;
     Array<float> proved;   // by triangle: how far its points lie from the reference, at most
     Array<Point> written;  // where the vertices are written; none where they stay as they are
@@ -112,6 +123,8 @@ class Mesh {
     std::size_t find_fans(const Vertex& vertex, std::array<std::size_t, Vertex::kMostTriangles>& ends) const;
     // The neighbours on its curve of a vertex on one: where its first fan begins, and where it ends.
     std::array<std::int32_t, 2> ends_of(std::int32_t vertex) const;
+    // The planes of the triangles around a vertex.
+    Quadric planes_around(std::int32_t vertex) const;
     // Makes each vertex on a curve a witness of every sheet that meets there.
     void add_curve_witnesses();
 
@@ -131,7 +144,6 @@ class Mesh {
     void order_ring(std::int32_t vertex);
     void order_fans(std::int32_t vertex);
     void note_curves();
-    void add_planes();
 
     Spot stretch_;
     float rounding_;

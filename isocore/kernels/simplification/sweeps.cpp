@@ -49,12 +49,12 @@ class Sweep {
             ring_.gather_ends(mesh_, vertex);
         else
             ring_.gather(mesh_, vertex);
-        const Quadric& quadric = mesh_.quadrics[static_cast<std::size_t>(vertex)];
+        const Quadric& quadric = *mesh_.quadrics[static_cast<std::size_t>(vertex)];
         for (std::size_t n = 0; n < ring_.count; n += kLanes) quadric.at(ring_.in_lanes(n)).store(each_.data() + n);
         for (std::size_t n = 0; n < ring_.count; ++n) {
             const auto to = static_cast<std::size_t>(ring_.neighbours[n]);
-            each_[n] = std::max(0.0f, each_[n]) + mesh_.quadrics[to].constant();
-            if (each_[n] > most_squared_ * (quadric.area() + mesh_.quadrics[to].area())) each_[n] = kInfinity;
+            each_[n] = std::max(0.0f, each_[n]) + mesh_.quadrics[to]->constant();
+            if (each_[n] > most_squared_ * (quadric.area() + mesh_.quadrics[to]->area())) each_[n] = kInfinity;
         }
     }
 
@@ -95,7 +95,7 @@ class Sweep {
 
     void wake(std::size_t other, std::size_t target) {
         const Spot way = mesh_.relative(mesh_.places[target].at, mesh_.places[other].at);
-        const float cost = std::max(0.0f, mesh_.quadrics[other].at(way)) + mesh_.quadrics[target].constant();
+        const float cost = std::max(0.0f, mesh_.quadrics[other]->at(way)) + mesh_.quadrics[target]->constant();
         costs_[other] = std::min(costs_[other], cost);
     }
 
@@ -113,6 +113,7 @@ class Sweep {
 template <class Real>
 void sweep(const std::vector<std::int32_t>& vertices, Mesh<Real>& mesh, Contraction<Real>& contraction,
            std::vector<float>& costs, std::size_t most) {
+    contraction.make_quadrics(vertices);
     Sweep<Real> sweep(mesh, contraction, costs);
     for (const std::int32_t v : vertices) {
         sweep.look_at(v);
