@@ -59,7 +59,8 @@ class EdgeTable {
     // The slot of an edge, or an empty one for it.
     static std::size_t slot_of(EdgeKey edge, const EdgeKey* slots, std::size_t size) {
         std::size_t slot = edge * std::uint64_t{0x9e3779b97f4a7c15} >> (64 - std::countr_zero(size));
-        while ((slots[slot] != edge) & (slots[slot] != kEmpty)) slot = (slot + 1) & (size - 1);
+        // One condition for both ends of the search: which of them it will be is unpredictable.
+        while (std::min(slots[slot] ^ edge, slots[slot] ^ kEmpty) != 0) slot = (slot + 1) & (size - 1);
         return slot;
     }
 

@@ -1,4 +1,4 @@
-// lots.hpp - Visited cells in lots: ranges of lowest points with some 1,024 cells each.
+// lots.hpp - Visited cells in lots: ranges of lowest points with some 2,048 cells each.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::size_t first_cell(const Walk<Cell, Value>& walk, std::int32_t point) {
 // however many they are.
 template <class Value>
 std::vector<Lot> cut_into_lots(const Walk<mesh::Tet, Value>& tets, const Walk<mesh::Hex, Value>& hexes) {
-    constexpr std::size_t kLot = 1024;
+    constexpr std::size_t kLot = 2048;
     std::vector<std::int32_t> points{0};
     for (std::size_t n = kLot; n < tets.size(); n += kLot) points.push_back(lowest_point(tets, n));
     for (std::size_t n = kLot; n < hexes.size(); n += kLot) points.push_back(lowest_point(hexes, n));

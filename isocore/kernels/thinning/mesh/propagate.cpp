@@ -127,21 +127,25 @@ class Propagation {
         for (const EdgeKey edge : from.received) place_vertex(edge, vertex++);
         for (const EdgeAbroad& edge : from.abroad)
             vertex_of[edge.place] = static_cast<uint32_t>(places_[edge.lot].vertex) + edge.vertex;
-        const auto first_middle = static_cast<uint32_t>(on_edges_ + places_[lot].middle);
-        const auto vertex_at = [&](uint32_t corner) {
-            const uint32_t number =
-                corner < Drawn::kMiddles ? vertex_of[corner] : first_middle + (corner - Drawn::kMiddles);
-            return static_cast<int32_t>(number);
-        };
         int32_t* out = mesh_.triangles.data() + places_[lot].corner;
+        if (from.middles.empty())
+            write_triangles(from.triangles, out, [&](uint32_t corner) { return vertex_of[corner]; });
+        else
+            write_triangles(from.triangles, out, [&, first = on_edges_ + places_[lot].middle](uint32_t corner) {
+                return corner < Drawn::kMiddles ? vertex_of[corner]
+                                                : static_cast<uint32_t>(first) + (corner - Drawn::kMiddles);
+            });
+    }
+
+    template <class VertexAt>
+    void write_triangles(const Array<uint32_t>& corners, int32_t* out, const VertexAt& vertex_at) {
         bool collapsed = false;
-        for (size_t n = 0; n < from.triangles.size(); n += 3, out += 3) {
-            const int32_t a = vertex_at(from.triangles[n]), b = vertex_at(from.triangles[n + 1]),
-                          c = vertex_at(from.triangles[n + 2]);
+        for (size_t n = 0; n < corners.size(); n += 3) {
+            const uint32_t a = vertex_at(corners[n]), b = vertex_at(corners[n + 1]), c = vertex_at(corners[n + 2]);
             collapsed |= (a == b) | (b == c) | (c == a);
-            out[0] = a;
-            out[1] = b;
-            out[2] = c;
+            out[n] = static_cast<int32_t>(a);
+            out[n + 1] = static_cast<int32_t>(b);
+            out[n + 2] = static_cast<int32_t>(c);
         }
         if (collapsed) collapsed_ = true;
     }

@@ -16,6 +16,7 @@
 #include "common/corner_signs.hpp"
 #include "common/crew.hpp"
 #include "common/prefetch.hpp"
+#include "thinning/mesh/neighbours.hpp"
 #include "thinning/mesh/scratch.hpp"
 #include "thinning/mesh/shared_cells.hpp"
 #include "thinning/mesh/thinning.hpp"
@@ -95,26 +96,36 @@ class Walk {
     // Writes the neighbours that are new and returns how many these are. Which ones is unpredictable, so there is no
     // branch on it where no other thread could come between.
     std::size_t step(std::int32_t cell, std::int32_t* found, bool alone) {
-        const std::int32_t *corners = record(cell), *twins = corners + Cell::kCorners;
-        const mesh::Mask crossed = mesh::kCrossedFaces<Cell>[signs(corners)];
+        const std::int32_t* corners = record(cell);
+        Neighbours<Cell> across;
+        across.find(corners + Cell::kCorners, mesh::kCrossedFaces<Cell>[signs(corners)]);
+        return alone ? step_alone(across, found) : step_shared(across, found);
+    }
+
+    std::size_t step_alone(const Neighbours<Cell>& across, std::int32_t* found) {
         std::atomic<std::uint64_t>* const visited = scratch_.visited.data();
         std::size_t count = 0;
-        const auto look = [&](std::size_t face, bool mark) {
-            const auto twin = static_cast<std::uint32_t>(twins[face]), there = crossed >> face & ~(twin >> 31) & 1,
-                       next = (twin & -there) / Cell::kFaces;
+        for (std::size_t face = 0; face < Cell::kFaces; ++face) {
+            const std::uint32_t next = across.cells[face];
+            const std::uint64_t bit = across.bit(face) << next % kWord;
             std::atomic<std::uint64_t>& word = visited[next / kWord];
-            const std::uint64_t bit = std::uint64_t{there} << next % kWord,
-                                before = word.load(std::memory_order_relaxed);
-            if (mark) word.store(before | bit, std::memory_order_relaxed);
+            const std::uint64_t before = word.load(std::memory_order_relaxed);
+            word.store(before | bit, std::memory_order_relaxed);
             found[count] = static_cast<std::int32_t>(next);
             count += (bit & ~before) != 0;
-        };
-        if (alone) {
-            for (std::size_t face = 0; face < Cell::kFaces; ++face) look(face, true);
-            return count;
         }
-        for (std::size_t face = 0; face < Cell::kFaces; ++face) look(face, false);
-        const std::size_t perhaps = std::exchange(count, 0);
+        return count;
+    }
+
+    std::size_t step_shared(const Neighbours<Cell>& across, std::int32_t* found) {
+        std::size_t perhaps = 0, count = 0;
+        for (std::size_t face = 0; face < Cell::kFaces; ++face) {
+            const std::uint32_t next = across.cells[face];
+            const std::uint64_t bit = across.bit(face) << next % kWord,
+                                before = scratch_.visited[next / kWord].load(std::memory_order_relaxed);
+            found[perhaps] = static_cast<std::int32_t>(next);
+            perhaps += (bit & ~before) != 0;
+        }
         for (std::size_t n = 0; n < perhaps; ++n) {
             if (mark(found[n], false)) found[count++] = found[n];
         }
