@@ -139,12 +139,27 @@ class EdgeVertices {
         const std::size_t ring = known == 0 ? run.ring : known;
         const float share = 1 / static_cast<float>(ring);
         const std::uint32_t* neighbour = ring_.data() + run.first;
-        for (std::size_t n = run.begin; n < run.end; ++n, neighbour += ring) {
+        // Where a vertex is, and how far the mean of its neighbours lies above its plane: the terms of a sum.
+        const auto look = [&](std::size_t n, float& at) {
             Lanes sum{};
-            for (std::size_t m = 0; m < ring; ++m) sum += from[neighbour[m]];
+            for (std::size_t m = 0; m < ring; ++m) sum += from[*neighbour++];
             const Lanes& own = from[vertex_[n]];
-            const float at = own[axis_[n]];
-            to[vertex_[n]][axis_[n]] = kept(at, at + factor * dot(normal_[vertex_[n]], share * sum - own));
+            at = own[axis_[n]];
+            return normal_[vertex_[n]] * (share * sum - own);
+        };
+        std::size_t n = run.begin;
+        for (; n + 4 <= run.end; n += 4) {
+            std::array<float, 4> at;
+            const Lanes a = look(n, at[0]), b = look(n + 1, at[1]), c = look(n + 2, at[2]), d = look(n + 3, at[3]);
+            const Lanes here{at[0], at[1], at[2], at[3]};
+            const auto row = [&](std::size_t lane) { return Lanes{a[lane], b[lane], c[lane], d[lane]}; };
+            const Lanes moved = kept(here, here + factor * (row(0) + row(1) + row(2)));
+            for (std::size_t m = 0; m < 4; ++m) to[vertex_[n + m]][axis_[n + m]] = moved[m];
+        }
+        for (; n < run.end; ++n) {
+            float at;
+            const Lanes product = look(n, at);
+            to[vertex_[n]][axis_[n]] = kept(at, at + factor * (product[0] + product[1] + product[2]));
         }
     }
 

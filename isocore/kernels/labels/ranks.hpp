@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <type_traits>
@@ -37,9 +38,23 @@ class RankTable {
     template <class Sample, class Rank>
     void look_up(const Sample* samples, std::size_t count, Rank* out) const {
         if constexpr (sizeof(Sample) <= 2) {
-            // Values of one type of at most 16 bits never share a place of the table.
-            for (std::size_t n = 0; n < count; ++n)
-                out[n] = static_cast<Rank>(direct_[static_cast<std::uint16_t>(samples[n])]);
+            // Values of one type of at most 16 bits never share a place of the table. Mostly a word's are all the same:
+            // then the word is what it is turned by one of them.
+            const auto rank = [&](std::size_t n) {
+                return static_cast<Rank>(direct_[static_cast<std::uint16_t>(samples[n])]);
+            };
+            constexpr std::size_t kWord = sizeof(std::uint64_t) / sizeof(Sample);
+            std::size_t n = 0;
+            for (; n + kWord <= count; n += kWord) {
+                std::uint64_t word;
+                std::memcpy(&word, samples + n, sizeof word);
+                if (word == std::rotl(word, 8 * sizeof(Sample))) {
+                    std::fill_n(out + n, kWord, rank(n));
+                } else {
+                    for (std::size_t m = n; m < n + kWord; ++m) out[m] = rank(m);
+                }
+            }
+            for (; n < count; ++n) out[n] = rank(n);
         } else {
             Sample last{};
             auto rank = static_cast<Rank>(rank_of(0));

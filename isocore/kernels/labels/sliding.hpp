@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "common/array.hpp"
 
@@ -60,6 +61,21 @@ inline float steep(float component) { return std::copysign(std::max(std::abs(com
 inline float kept(float from, float to) {
     const float middle = static_cast<float>(static_cast<int>(from + 1.0f)) - 0.5f;
     return std::clamp(to, middle - kHalfWidth, middle + kHalfWidth);
+}
+
+// Four at a time.
+inline Lanes kept(const Lanes& from, const Lanes& to) {
+#if defined(__GNUC__)
+    using Whole = std::int32_t __attribute__((vector_size(16)));
+    const Lanes middle = __builtin_convertvector(__builtin_convertvector(from + 1.0f, Whole), Lanes) - 0.5f;
+    const Lanes low = middle - kHalfWidth, high = middle + kHalfWidth;
+    const Lanes raised = to < low ? low : to;
+    return high < raised ? high : raised;
+#else
+    Lanes out;
+    for (std::size_t n = 0; n < 4; ++n) out[n] = kept(from[n], to[n]);
+    return out;
+#endif
 }
 
 using Places = Array<Lanes>;
