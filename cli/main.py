@@ -175,3 +175,9 @@ def _terminate(number: int, frame: FrameType | None) -> None:
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
     raise Terminated(number)
+
+
+#: CPython gets memory for its frames in pieces of 16 KB, and gives the last one back whenever a call returns from it: a
+#: loop whose calls happen to cross the end of a piece pays the system for every one of them, thousands while modules
+#: are imported. The first frame asks for as much as all others will take (words, of which only used pages are real).
+main.__code__ = main.__code__.replace(co_stacksize=1 << 14)

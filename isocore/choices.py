@@ -34,8 +34,9 @@ TOPOLOGIES = ("faces", "trilinear")
 MILLIMETRES = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "m": 1e3}
 
 _MOST_OF_A_RANGE = 10_000
-_RANGE = re.compile(r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d{1,18})|\+(?P<step>[^:]+))")
-_LENGTH = re.compile(r"(?P<number>[^a-zµ]+?(e[-+]?\d+)?)\s*(?P<unit>[a-zµ]*)", re.IGNORECASE)
+#: Regular expressions are compiled when they are used: the help needs none.
+_RANGE = r"(?P<first>[^:]+):(?P<last>[^:]+):((?P<count>\d{1,18})|\+(?P<step>[^:]+))"
+_LENGTH = r"(?P<number>[^a-zµ]+?(e[-+]?\d+)?)\s*(?P<unit>[a-zµ]*)"
 
 
 class Number(NamedTuple):
@@ -147,12 +148,12 @@ def spread(text: str) -> tuple[Choice, ...]:
         return (Auto(),)
     if text.lower() == "otsu":
         return (Otsu(),)
-    if re.fullmatch(r"[pP][\d.]+", text):
+    if text[:1] in ("p", "P") and re.fullmatch(r"[pP][\d.]+", text):
         percent = _number(text, text[1:])
         if not 0 <= percent <= 100:
             raise OptionError(f"isovalue {text}: a percentile lies between p0 and p100")
         return (Percentile(percent, text.lower()),)
-    if match := _RANGE.fullmatch(text):
+    if ":" in text and (match := re.fullmatch(_RANGE, text)):
         return _spread_range(text, match)
     return (Number(_number(text, text), text),)
 
@@ -207,7 +208,7 @@ def parse_max_error(text: str) -> MaxError:
     text = text.strip()
     if text.lower() == "none":
         return Unbounded(text)
-    match = _LENGTH.fullmatch(text)
+    match = re.fullmatch(_LENGTH, text, re.IGNORECASE)
     wrong = OptionError(f"--max-error {text}: is no length; write voxels (0.5), world units (0.3mm), or none")
     if match is None:
         raise wrong

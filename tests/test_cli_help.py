@@ -16,7 +16,7 @@ from click.shell_completion import get_completion_class
 from click.testing import CliRunner
 from isocore.cli.completion import SHELLS, VARIABLE
 from isocore.cli.groups import GROUPS, GroupedOption, sections_of
-from isocore.cli.main import COMMANDS, EXIT_CODES
+from isocore.cli.main import COMMANDS, EXIT_CODES, main
 from isocore.cli.main import isocore as program
 from man_pages import man_pages
 
@@ -186,3 +186,8 @@ def test_completion_is_installed_where_the_shell_looks(
     done = CliRunner().invoke(program, ["completion", shell, "--install"])
     assert done.exit_code == 0 and done.output.startswith(f"{tmp_path / place}: ")
     assert (tmp_path / place).read_text() == printed and VARIABLE in printed
+
+
+def test_the_frames_of_all_calls_fit_the_piece_of_memory_of_the_first() -> None:
+    """Else CPython asks the system for 16 KB and gives them back, thousands of times while modules are imported."""
+    assert 8 * main.__code__.co_stacksize >= 8 * 16 * 1024
