@@ -44,9 +44,9 @@ void Backward<Real>::enter_box(const Cell& low, const Cell& high, float limit) {
     const Cells& cells = reference_.cells();
     Cell from, to;
     for (std::size_t a = 0; a < 3; ++a) {
-        const auto margin =
-            static_cast<std::int32_t>((limit + kBoxMargin) / mesh_.stretch()[a] * static_cast<float>(cells.per_cell)) +
-            2;
+        const float reach = (limit + kBoxMargin) / mesh_.stretch()[a] * static_cast<float>(cells.per_cell);
+        if (!(reach < Rows::kMostCells)) return;  // very flat cells
+        const auto margin = static_cast<std::int32_t>(reach) + 2;
         from[a] = std::max(low[a] - margin, 0);
         to[a] = std::min(high[a] + margin, static_cast<std::int32_t>(cells.dims[a]) - 1);
     }
