@@ -2,7 +2,9 @@
 #include "labels/census.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 #include <unordered_map>
 #include <utility>
@@ -29,6 +31,10 @@ Census take_census(const Sample* samples, std::size_t count, std::size_t most) {
             }
         }
         std::size_t end = begin + 1;
+        constexpr std::size_t kAtOnce = 8;
+        std::array<Sample, kAtOnce> same;
+        same.fill(value);
+        while (end + kAtOnce <= count && std::memcmp(samples + end, same.data(), sizeof same) == 0) end += kAtOnce;
         while (end < count && samples[end] == value) ++end;
         counted[static_cast<Sample>(value + Sample{0})] += end - begin;  // -0 is 0
         begin = end;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/large_pages.hpp"
@@ -20,13 +21,18 @@ namespace isocore::labels {
 // their ring, block by block, so that loops over a ring have one length many times over.
 class EdgeVertices {
   public:
-    EdgeVertices(const Shape& shape, int threads) : triangles_(shape.triangles), shares_(find_shares(shape, threads)) {
-        const std::vector<std::uint32_t> ends = find_ends(shape);
+    explicit EdgeVertices(const Shape& shape) : triangles_(shape.triangles), ends_(find_ends(shape)) {
         std::vector<std::uint8_t> sizes(shape.elements.size(), 0);
         for (const std::int32_t corner : shape.triangles) ++sizes[static_cast<std::size_t>(corner)];
-        for (std::size_t v = 0; v < ends.size(); ++v)
-            sizes[v] = static_cast<std::uint8_t>(sizes[v] + (ends[v] != kNone));
-        fill(order(shape, sizes), ends, threads);
+        for (std::size_t v = 0; v < ends_.size(); ++v)
+            sizes[v] = static_cast<std::uint8_t>(sizes[v] + (ends_[v] != kNone));
+        place_ = order(shape, sizes);
+    }
+
+    // What the first step needs besides: each vertex's neighbours.
+    void find_neighbours(const Shape& shape, int threads) {
+        shares_ = find_shares(shape, threads);
+        fill(std::move(place_), threads);
     }
 
     std::size_t blocks() const { return blocks_.size() - 1; }
@@ -89,7 +95,7 @@ class EdgeVertices {
     }
 
     // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.
-    void fill(Array<std::uint32_t> place, const std::vector<std::uint32_t>& ends, int threads) {
+    void fill(Array<std::uint32_t> place, int threads) {
         parallel_for(threads, shares_.size(), [&](std::size_t number) {
             const Share& share = shares_[number];
             for (std::size_t t = 3 * share.first; t < 3 * share.last; t += 3) {
@@ -99,8 +105,8 @@ class EdgeVertices {
                     ring_[place[v]++] = static_cast<std::uint32_t>(triangles_[t + (n + 1) % 3]);
                 }
             }
-            for (std::size_t v = share.begin; v < share.end && !ends.empty(); ++v) {
-                if (place[v] != kNone && ends[v] != kNone) ring_[place[v]] = ends[v];
+            for (std::size_t v = share.begin; v < share.end && !ends_.empty(); ++v) {
+                if (place[v] != kNone && ends_[v] != kNone) ring_[place[v]] = ends_[v];
             }
         });
     }
@@ -165,6 +171,8 @@ class EdgeVertices {
 
     std::span<const std::int32_t> triangles_;
     std::vector<Share> shares_;
+    std::vector<std::uint32_t> ends_;  // of open rings: shape.hpp
+    Array<std::uint32_t> place_;       // of each vertex: where its ring begins, until that is filled
     std::vector<std::uint32_t> vertex_;
     std::vector<std::uint8_t> axis_;
     std::vector<Run> runs_;

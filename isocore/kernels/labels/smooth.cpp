@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -57,24 +58,32 @@ void write_back(const Places& places, std::span<const Element> elements, Coordin
     });
 }
 
-// Moves `from` by so many rounds.
-void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Places& from) {
+// Moves `from` by so many rounds. curves_of: the mesh, if any vertices lie on curves.
+void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads, Places& from) {
     Places to = large_array<Lanes>(from.size());
     share_vertices(threads, from.size(), [&](std::size_t begin, std::size_t end) {
         std::copy_n(from.data() + begin, end - begin, to.data() + begin);
     });
-    EdgeVertices edges(shape, threads);
+    std::optional<EdgeVertices> edges;
+    std::optional<CurveVertices> curves;
+    parallel_for(threads, 2, [&](std::size_t n) {
+        if (n == 0)
+            edges.emplace(shape);
+        else
+            curves.emplace(curves_of);
+    });
+    edges->find_neighbours(shape, threads);
     const std::size_t reach = farthest_corners(shape.triangles, threads) / kBlock + 1;
     for (int first = 0; first < rounds;) {
         const int steps = std::min(rounds - first, first == 0 ? kSamePace / 2 : kSamePace);
-        edges.renew_normals(from, threads);
-        in_waves(threads, static_cast<std::size_t>(steps), edges.blocks(), reach,
+        edges->renew_normals(from, threads);
+        in_waves(threads, static_cast<std::size_t>(steps), edges->blocks(), reach,
                  [&](std::size_t step, std::size_t block) {
                      const float factor = step % 2 == 0 ? kSmoothing : kUndoing;
                      const Places& before = step % 2 == 0 ? from : to;
                      Places& after = step % 2 == 0 ? to : from;
-                     edges.step(block, before, after, factor, step == 0);
-                     curves.step(block, before, after, factor, step == 0);
+                     edges->step(block, before, after, factor, step == 0);
+                     curves->step(block, before, after, factor, step == 0);
                  });
         if (steps % 2 != 0) std::swap(from, to);
         first += steps;
@@ -86,7 +95,7 @@ void run(const Shape& shape, CurveVertices curves, int rounds, int threads, Plac
 void smooth(LabelMesh& mesh, int rounds, int threads) {
     if (rounds <= 0) return;
     Places places = places_of(mesh.vertices.data(), mesh.elements.size(), threads);
-    run({mesh.elements, mesh.triangles, false}, CurveVertices(mesh), rounds, threads, places);
+    run({mesh.elements, mesh.triangles, false}, mesh, rounds, threads, places);
     write_back(places, mesh.elements, mesh.vertices.data(), threads);
 }
 
@@ -100,7 +109,7 @@ void smooth(Coordinate* vertices, std::size_t vertex_count, const std::int32_t* 
         elements[n / 3] = static_cast<Element>(elements[n / 3] | (inside ? 1u << n % 3 : 0u));
     }
     Places places = places_of(vertices, vertex_count, threads);
-    run({elements, {triangles, 3 * triangle_count}, true}, CurveVertices({}), rounds, threads, places);
+    run({elements, {triangles, 3 * triangle_count}, true}, {}, rounds, threads, places);
     write_back(places, elements, vertices, threads);
 }
 
