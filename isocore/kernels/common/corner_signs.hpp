@@ -56,7 +56,7 @@ class CornerSigns {
         Mask signs = 0;
         for (std::size_t n = 0; n < 4; ++n) {
             const Value value = values[corners[n]];
-            signs |= Mask{(value >= lowest_) & (value <= highest_)} << n;
+            signs |= static_cast<Mask>((value >= lowest_) & (value <= highest_)) << n;
         }
         return signs;
     }
