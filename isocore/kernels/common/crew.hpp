@@ -37,7 +37,7 @@ class Crew {
         busy_.store(threads_.size(), std::memory_order_relaxed);
         call();
         attempt(0);
-        wait_while([&] { return busy_.load(std::memory_order_acquire) > 0; }, [] {});
+        while (busy_.load(std::memory_order_acquire) > 0) std::this_thread::yield();
         if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     }
 
@@ -59,11 +59,21 @@ class Crew {
 
     void serve(std::size_t member) {
         for (std::uint32_t seen = 0;; ++seen) {
-            wait_while([&] { return calls_.load(std::memory_order_acquire) == seen; }, [&] { calls_.wait(seen); });
+            wait_for_call(seen);
             if (work_ == nullptr) return;
             attempt(member);
             busy_.fetch_sub(1, std::memory_order_release);
         }
+    }
+
+    // The next piece of work mostly comes at once, and it takes long to wake a thread that sleeps.
+    void wait_for_call(std::uint32_t seen) const {
+        constexpr int kPatience = 4096;
+        for (int n = 0; n < kPatience; ++n) {
+            if (calls_.load(std::memory_order_acquire) != seen) return;
+            std::this_thread::yield();
+        }
+        calls_.wait(seen, std::memory_order_acquire);
     }
 
     void attempt(std::size_t member) {
@@ -73,13 +83,6 @@ class Crew {
             const std::lock_guard<std::mutex> lock(guard_);
             if (!failure_) failure_ = std::current_exception();
         }
-    }
-
-    // The next piece of work mostly comes at once: it takes long to wake a thread that sleeps.
-    template <class Condition, class Sleep>
-    static void wait_while(const Condition& condition, const Sleep& sleep) {
-        constexpr int kPatience = 4096;
-        for (int n = 0; condition(); ++n) n < kPatience ? std::this_thread::yield() : sleep();
     }
 
     std::size_t size_;
