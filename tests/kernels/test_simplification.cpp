@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "check.hpp"
+#include "labels/label_mesh.hpp"
+#include "labels/sheets.hpp"
 #include "marching_cubes/marching_cubes.hpp"
 #include "simplification/patch.hpp"
 #include "simplification/simplify.hpp"
@@ -63,6 +65,49 @@ void simplify(int seed, const Dims& most, double bound, std::size_t most_triangl
     CHECK(found.vertices == again.vertices && found.triangles == again.triangles);
 }
 
+// The first phase makes a mesh for each box; that of a reference with triangles of its own, one mesh of all.
+void apart_as_together(const MeshArrays<float>& mesh) {
+    const std::vector<std::int32_t> copy(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
+    MeshArrays<float> reference = mesh;
+    reference.triangles = copy.data();
+    simplification::Options options;
+    options.max_error = 0.5;
+    options.other = {1, 2, 3};
+    const Simplified<float> together = simplification::simplify(mesh, reference, options);
+    for (const int threads : {1, 3}) {
+        options.threads = threads;
+        const Simplified<float> apart = simplification::simplify(mesh, mesh, options);
+        CHECK(apart.vertices == together.vertices && apart.triangles == together.triangles);
+        CHECK(apart.kept == together.kept && apart.left == together.left);
+        CHECK(apart.facts.collapses == together.facts.collapses && apart.facts.collapses > 0);
+        CHECK(apart.facts.refused == together.facts.refused);
+        CHECK(apart.facts.back_max == together.facts.back_max);
+        CHECK(apart.facts.error.sum == together.facts.error.sum);
+        CHECK(apart.facts.other.squares == together.facts.other.squares);
+        CHECK(apart.facts.sheets.size() == together.facts.sheets.size());
+        for (std::size_t n = 0; n < apart.facts.sheets.size(); ++n) {
+            CHECK(apart.facts.sheets[n].refused == together.facts.sheets[n].refused);
+            CHECK(apart.facts.sheets[n].error.sum == together.facts.sheets[n].error.sum);
+        }
+    }
+}
+
+void apart_as_together() {
+    const Volume volume = volume_of(1, {75, 70, 9});
+    const auto marched = marching_cubes::march<float, float>({volume.samples.data(), volume.dims}, {});
+    apart_as_together(
+        {marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(), marched.triangles.size() / 3});
+    std::vector<std::uint8_t> labels;
+    for (const float sample : volume.samples)
+        labels.push_back(sample < -0.5f ? 0 : sample < 0.3f ? 1 : sample < 1 ? 2 : 3);
+    const std::vector<double> values{0, 1, 2, 3};
+    const std::vector<std::uint32_t> ranks{0, 1, 2, 3};
+    auto mesh = labels::extract<const std::uint8_t>({labels.data(), volume.dims}, {values, ranks}, 1);
+    const auto sheets = labels::take_sheets(mesh);
+    apart_as_together({mesh.vertices.data(), mesh.vertices.size() / 3, mesh.triangles.data(), mesh.triangles.size() / 3,
+                       sheets.of_triangles.data(), sheets.pairs.size() / 2});
+}
+
 // A patch is counted in: each triangle of the reference is there once, in however many cells it lies.
 void gather_large_triangles() {
     const std::vector<float> vertices{0, 0, 0, 4.5f, 0.2f, 0.1f, 0.3f, 5.5f, 0.4f, 5.1f, 4.9f, 3.2f};
@@ -70,7 +115,8 @@ void gather_large_triangles() {
     const MeshArrays<float> arrays{vertices.data(), 4, triangles.data(), 2};
     const auto cells = simplification::Cells::around(arrays, 1.0);
     const simplification::Reference<float> reference(arrays, cells);
-    const simplification::Mesh<float> mesh(arrays, cells, {1, 1, 1}, 0, 1);
+    simplification::Mesh<float> mesh({1, 1, 1}, 0);
+    mesh.take_all(arrays, cells, 1);
     CHECK(reference.repeats());
     simplification::Rows rows;
     simplification::Patch patch;
@@ -88,7 +134,8 @@ void gather_from_rows() {
                                    marched.triangles.size() / 3};
     const auto cells = simplification::Cells::around(arrays, 1.0);
     const simplification::Reference<float> reference(arrays, cells);
-    const simplification::Mesh<float> mesh(arrays, cells, {1, 0.7, 0.4}, 0, 1);
+    simplification::Mesh<float> mesh({1, 0.7, 0.4}, 0);
+    mesh.take_all(arrays, cells, 1);
     simplification::Rows none, rows;
     rows.cover({3, 0, 1}, {60, 6, 5});
     simplification::Patch read, copied;
@@ -116,4 +163,5 @@ void test_simplification() {
     for (int seed = 0; seed < 3; ++seed) simplify<double>(seed, {12, 13, 12}, 0.5, 0);
     for (int seed = 0; seed < 3; ++seed) simplify<float>(seed, {9, 9, 9}, std::numeric_limits<double>::infinity(), 20);
     simplify<float>(1, {150, 8, 7}, 0.5, 0);  // several boxes
+    apart_as_together();
 }

@@ -14,6 +14,8 @@ namespace isocore::simplification {
 
 using Cell = std::array<std::int32_t, 3>;
 
+inline constexpr std::int32_t kBoxCells = 32;  // along each axis of a box, the unit of parallel work
+
 struct Cells {
     std::array<double, 3> origin{0, 0, 0};  // the low corner of cell 0, 0, 0
     double per_cell = 1;                    // from coordinates to cells

@@ -32,6 +32,13 @@ class Contraction {
     bool contract(const Ring& ring, std::size_t target);
     // The quadrics of some vertices that may move and of their neighbours, where they are not there yet.
     void make_quadrics(const std::vector<std::int32_t>& vertices);
+    // The mesh and the grid were filled anew.
+    void start_over() {
+        room_ = {};
+        quadric_room_ = {};
+        spare_ = {};
+        crossings_.start_over();
+    }
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
     float limit() const { return limit_; }

@@ -45,6 +45,12 @@ class Crossings {
           seen_cubes_(grid.cube_count()),
           seen_triangles_(mesh.triangles.size()) {}
 
+    // The mesh and the grid were filled anew.
+    void start_over() {
+        seen_cubes_ = NumberSet(grid_.cube_count());
+        seen_triangles_ = NumberSet(mesh_.triangles.size());
+    }
+
     // Do the faces meet anything that they should not? facets: star.draw()'s. others: stars of the same vertex, in
     // other sheets, which are drawn at the same time: their faces count, their triangles do not.
     bool are_there(const Star& star, const Facets& facets, const std::vector<const Star*>& others);

@@ -13,8 +13,6 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr std::size_t kAtOnce = 4096;  // triangles
-
 void add(const SheetFacts& found, auto& to) {
     to.unproved += found.unproved;
     to.error.add(found.error);
@@ -88,12 +86,12 @@ class Measuring {
 template <class Real>
 void measure(Mesh<Real>& mesh, const std::vector<Backward<Real>*>& provers, float limit, const Spot& other,
              Facts& facts) {
-    const std::size_t count = mesh.triangles.size();
-    std::vector<BySheet> found((count + kAtOnce - 1) / kAtOnce);
+    std::vector<BySheet> found(mesh.lot_count());
     std::atomic<std::size_t> taken{0};
     const auto with_prover = [&] { return Measuring<Real>(mesh, *provers[taken++], limit, other); };
     const auto measure_some = [&](Measuring<Real>& measuring, std::size_t some) {
-        for (std::size_t t = some * kAtOnce; t < std::min(count, (some + 1) * kAtOnce); ++t) {
+        const auto [first, end] = mesh.lot(some);
+        for (std::size_t t = first; t < end; ++t) {
             if (mesh.triangles[t].is_gone()) continue;
             const auto number = static_cast<std::int32_t>(t);
             measuring.measure(number, of_sheet(mesh.sheet_of(number), found[some]));

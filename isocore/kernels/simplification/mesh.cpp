@@ -3,33 +3,13 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "common/large_pages.hpp"
 #include "common/parallel_each.hpp"
+#include "simplification/morton.hpp"
 
 namespace isocore::simplification {
-namespace {
-
-// The bits of a number of up to 21 bits, two places apart from each other.
-std::uint64_t spread(std::uint64_t n) {
-    n = (n | n << 32) & 0x1f00000000ffff;
-    n = (n | n << 16) & 0x1f0000ff0000ff;
-    n = (n | n << 8) & 0x100f00f00f00f00f;
-    n = (n | n << 4) & 0x10c30c30c30c30c3;
-    return (n | n << 2) & 0x1249249249249249;
-}
-
-// Where a cell comes in the order of Morton: cells close to each other are mostly close in it, too.
-std::uint64_t morton(const Cell& cell, int brick_bits) {
-    std::uint64_t out = 0;
-    for (std::size_t a = 0; a < 3; ++a) out |= spread(static_cast<std::uint64_t>(cell[a] >> brick_bits)) << a;
-    return out;
-}
-
-}  // namespace
-
 std::int32_t* RingRoom::take(std::size_t size) {
     constexpr std::size_t kBlock = 16384, kTooLarge = 2;
     for (std::size_t some = size; some < std::min(size + kTooLarge, free_.size()); ++some) {
@@ -64,69 +44,64 @@ Quadric* QuadricRoom::take() {
 }
 
 template <class Real>
-Mesh<Real>::Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch,
-                 double rounding, int threads)
+Mesh<Real>::Mesh(const std::array<double, 3>& stretch, double rounding)
     : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])},
-      rounding_(static_cast<float>(rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {
-    for (std::size_t n = 0; n < 3 * input.triangle_count; ++n) {
-        if (static_cast<std::size_t>(static_cast<std::uint32_t>(input.triangles[n])) >= input.vertex_count)
-            throw std::invalid_argument("a triangle names a vertex that does not exist");
-    }
-    number_vertices(input, cells);
-    number_triangles(input);
+      rounding_(static_cast<float>(rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {}
+
+template <class Real>
+void Mesh<Real>::take_all(const MeshArrays<Real>& input, const Cells& cells, int threads) {
+    number_triangles(input, number_vertices(input, cells));
     find_rings(threads);
     return_freed_memory();
     quadrics.resize(vertices.size());
 }
 
+// Returns the number of each vertex of the input.
 template <class Real>
-void Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cells) {
-    constexpr int kBrickBits = 2;
+Array<std::int32_t> Mesh<Real>::number_vertices(const MeshArrays<Real>& input, const Cells& cells) {
     const std::size_t count = input.vertex_count;
     std::vector<std::pair<std::uint64_t, std::int32_t>> order(count);
     for (std::size_t n = 0; n < count; ++n)
         order[n] = {morton(cells.at(input.vertices + 3 * n), kBrickBits), static_cast<std::int32_t>(n)};
     std::sort(order.begin(), order.end());
     places.resize(count);
-    renumbered_.resize(count);
+    from_vertices.resize(count);
     if (input.written != nullptr) written.resize(count);
+    Array<std::int32_t> numbers(count);
     for (std::size_t n = 0; n < count; ++n) {
-        const std::int32_t from = order[n].second;
-        const Real* const place = input.vertices + 3 * static_cast<std::size_t>(from);
-        places[n] = {{place[0], place[1], place[2]}, kNone};
+        const std::int32_t from = from_vertices[n] = order[n].second;
+        places[n] = {input.place(from), kNone};
         if (input.written != nullptr) {
             const double* const there = input.written + 3 * static_cast<std::size_t>(from);
             written[n] = {there[0], there[1], there[2]};
         }
-        renumbered_[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(n);
+        numbers[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(n);
     }
+    return numbers;
 }
 
+// By their lowest vertex; those of one vertex in the input's order.
 template <class Real>
-template <class Visit>
-void Mesh<Real>::each_number(const MeshArrays<Real>& input, const Visit& visit) const {
+void Mesh<Real>::number_triangles(const MeshArrays<Real>& input, const Array<std::int32_t>& numbers) {
     const std::size_t count = input.triangle_count;
-    const auto corner = [&](std::size_t n) { return renumbered_[static_cast<std::size_t>(input.triangles[n])]; };
+    triangles.resize(count);
+    from_triangles.resize(count);
+    proved.resize(count);
+    std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
+    if (input.sheets != nullptr) sheets_.resize(count);
+    const auto corner = [&](std::size_t n) { return numbers[static_cast<std::size_t>(input.triangles[n])]; };
     const auto lowest = [&](std::size_t t) {
         return static_cast<std::size_t>(std::min({corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}));
     };
     std::vector<std::int32_t> next(input.vertex_count + 1);
     for (std::size_t t = 0; t < count; ++t) ++next[lowest(t) + 1];
     for (std::size_t v = 0; v < input.vertex_count; ++v) next[v + 1] += next[v];
-    for (std::size_t t = 0; t < count; ++t) visit(t, static_cast<std::size_t>(next[lowest(t)]++));
-}
-
-template <class Real>
-void Mesh<Real>::number_triangles(const MeshArrays<Real>& input) {
-    triangles.resize(input.triangle_count);
-    proved.resize(input.triangle_count);
-    std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
-    if (input.sheets != nullptr) sheets_.resize(input.triangle_count);
-    const auto corner = [&](std::size_t n) { return renumbered_[static_cast<std::size_t>(input.triangles[n])]; };
-    each_number(input, [&](std::size_t t, std::size_t to) {
+    for (std::size_t t = 0; t < count; ++t) {
+        const auto to = static_cast<std::size_t>(next[lowest(t)]++);
         triangles[to] = {{corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}, kNone};
+        from_triangles[to] = static_cast<std::int32_t>(t);
         if (input.sheets != nullptr) sheets_[to] = input.sheets[t];
-    });
+    }
 }
 
 template <class Real>
@@ -141,7 +116,7 @@ void Mesh<Real>::find_rings(int threads) {
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         vertices[v].ring = next;
         next += counts[v];
-        vertices[v].odd = counts[v] > Vertex::kMostTriangles;
+        vertices[v].odd = vertices[v].odd || counts[v] > Vertex::kMostTriangles;
         vertices[v].count = static_cast<std::uint16_t>(std::min<std::uint32_t>(counts[v], 65535));
     }
     for (std::size_t t = triangles.size(); t-- > 0;) {  // the last comes last in its rings
@@ -227,22 +202,27 @@ Quadric Mesh<Real>::planes_around(std::int32_t number) const {
 }
 
 template <class Real>
-void Mesh<Real>::take(const MeshArrays<Real>& input, Simplified<Real>& out) const {
-    std::vector<std::int32_t> numbers(input.vertex_count, kNone);
-    std::int32_t next = 0;
-    for (std::size_t n = 0; n < input.vertex_count; ++n) {
-        if (vertices[static_cast<std::size_t>(renumbered_[n])].count == 0) continue;
-        numbers[static_cast<std::size_t>(renumbered_[n])] = next++;
+void Mesh<Real>::give(const MeshArrays<Real>& input, Simplified<Real>& out) const {
+    Array<std::int32_t> there(input.vertex_count, kNone), numbers(vertex_count());  // of the input's vertices; in out
+    for (std::size_t v = 0; v < vertex_count(); ++v) {
+        if (vertices[v].count > 0) there[static_cast<std::size_t>(from_vertices[v])] = static_cast<std::int32_t>(v);
+    }
+    for (std::size_t n = 0; n < there.size(); ++n) {
+        if (there[n] == kNone) continue;
+        numbers[static_cast<std::size_t>(there[n])] = static_cast<std::int32_t>(out.kept.size());
         for (std::size_t a = 0; a < 3; ++a) out.vertices.push_back(input.vertices[3 * n + a]);
         out.kept.push_back(static_cast<std::int32_t>(n));
     }
-    each_number(input, [&](std::size_t t, std::size_t number) {
-        const Triangle& triangle = triangles[number];
-        if (triangle.is_gone()) return;
-        for (const std::int32_t corner : triangle.corners)
+    there.assign(input.triangle_count, kNone);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (!triangles[t].is_gone()) there[static_cast<std::size_t>(from_triangles[t])] = static_cast<std::int32_t>(t);
+    }
+    for (std::size_t n = 0; n < there.size(); ++n) {
+        if (there[n] == kNone) continue;
+        for (const std::int32_t corner : triangles[static_cast<std::size_t>(there[n])].corners)
             out.triangles.push_back(numbers[static_cast<std::size_t>(corner)]);
-        if (has_sheets()) out.left.push_back(static_cast<std::int32_t>(t));
-    });
+        if (has_sheets()) out.left.push_back(static_cast<std::int32_t>(n));
+    }
 }
 
 template class Mesh<float>;

@@ -80,13 +80,25 @@ class QuadricRoom {
     std::vector<Quadric*> free_;
 };
 
+struct Part;     // part.hpp
+struct Remains;  // remains.hpp
+template <class Real>
+class Joining;
+
 template <class Real>
 class Mesh {
   public:
-    // Vertices are renumbered by where they are, triangles by their first vertex, so that neighbours are close together
-    // in memory. Throws std::invalid_argument if a triangle names a vertex that is not there.
-    Mesh(const MeshArrays<Real>& input, const Cells& cells, const std::array<double, 3>& stretch, double rounding,
-         int threads);
+    // Without any vertex.
+    Mesh(const std::array<double, 3>& stretch, double rounding);
+
+    // Vertices are renumbered by where they are, triangles by their lowest vertex, so that neighbours are close
+    // together in memory. Three ways to fill a mesh: with all of the input; with a part of it; with what is left of all
+    // parts, which are then empty.
+    void take_all(const MeshArrays<Real>& input, const Cells& cells, int threads);
+    void take(const MeshArrays<Real>& input, const Part& part);
+    void take(const MeshArrays<Real>& input, std::vector<Remains>& parts);
+    // What is left of the part that was taken. Whoever counts on its vertices' quadrics has them in there.
+    Remains remains(const Part& part) const;
 
     std::size_t vertex_count() const { return vertices.size(); }
     // A place relative to another, stretched.
@@ -100,7 +112,7 @@ class Mesh {
     float rounding() const { return rounding_; }
 
     // What is left, in the order in which it came in.
-    void take(const MeshArrays<Real>& input, Simplified<Real>& out) const;
+    void give(const MeshArrays<Real>& input, Simplified<Real>& out) const;
 
     Array<Place<Real>> places;  // of the vertices, then of the reference's other vertices
     std::vector<Vertex> vertices;
@@ -108,6 +120,19 @@ class Mesh {
     Array<Triangle> triangles;
     Array<float> proved;   // by triangle: how far its points lie from the reference, at most
     Array<Point> written;  // where the vertices are written; none where they stay as they are
+    // Numbers in the input: of the vertices, and then of witnesses on curves that are copies of them; of the triangles.
+    Array<std::int32_t> from_vertices, from_triangles;
+
+    // Sums over triangles are made lot by lot: so many of the input's triangles, of which those of numbers `first` to
+    // `end` - 1 are left.
+    struct Lot {
+        std::size_t first, end;
+    };
+    std::size_t lot_count() const { return lots_.empty() ? (triangles.size() + kLot - 1) / kLot : lots_.size(); }
+    Lot lot(std::size_t number) const {
+        if (lots_.empty()) return {number * kLot, std::min(triangles.size(), (number + 1) * kLot)};
+        return {lots_[number], number + 1 < lots_.size() ? lots_[number + 1] : triangles.size()};
+    }
 
     // The sheet of a triangle; 0 where the mesh is not made of sheets.
     std::uint32_t sheet_of(std::int32_t triangle) const {
@@ -129,11 +154,12 @@ class Mesh {
     void add_curve_witnesses();
 
   private:
-    void number_vertices(const MeshArrays<Real>& input, const Cells& cells);
-    void number_triangles(const MeshArrays<Real>& input);
-    // visit(triangle of the input, its number here) of all, in the input's order.
-    template <class Visit>
-    void each_number(const MeshArrays<Real>& input, const Visit& visit) const;
+    static constexpr std::size_t kLot = 4096;
+
+    friend class Joining<Real>;  // remains.cpp
+
+    Array<std::int32_t> number_vertices(const MeshArrays<Real>& input, const Cells& cells);
+    void number_triangles(const MeshArrays<Real>& input, const Array<std::int32_t>& numbers);
     void find_rings(int threads);
     // How some triangles follow each other around a vertex: in a ring, or from one neighbour to another.
     struct Fan {
@@ -147,9 +173,10 @@ class Mesh {
 
     Spot stretch_;
     float rounding_;
-    Array<std::int32_t> renumbered_;  // by number in the input
     Array<std::int32_t> rings_;
-    Array<std::uint32_t> sheets_;  // by triangle
+    Array<Quadric> quadrics_;        // of what was left of parts
+    std::vector<std::size_t> lots_;  // where each begins, where some triangles of the input are not there
+    Array<std::uint32_t> sheets_;    // by triangle
     // The vertices on curves, in ascending order, and of each its two neighbours.
     Array<std::int32_t> on_curves_;
     Array<std::array<std::int32_t, 2>> along_;

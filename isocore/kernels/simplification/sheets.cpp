@@ -61,6 +61,8 @@ template <class Real>
 void Mesh<Real>::note_curves() {
     std::array<std::size_t, Vertex::kMostTriangles> ends;
     std::size_t curves = 0, witnesses = 0;
+    on_curves_.clear();
+    along_.clear();
     for (const Vertex& vertex : vertices) {
         if (!vertex.on_curve) continue;
         ++curves;
@@ -69,6 +71,7 @@ void Mesh<Real>::note_curves() {
     on_curves_.reserve(curves);
     along_.reserve(curves);
     places.reserve(places.size() + witnesses);
+    from_vertices.reserve(places.size() + witnesses);
     for (std::size_t v = 0; v < vertices.size(); ++v) {
         if (!vertices[v].on_curve) continue;
         on_curves_.push_back(static_cast<std::int32_t>(v));
@@ -85,6 +88,7 @@ void Mesh<Real>::add_curve_witnesses() {
         for (std::size_t n = 0; n < fans; ++n) {
             Triangle& triangle = triangles[static_cast<std::size_t>(vertices[number].ring[ends[n] - 1])];
             places.push_back({places[number].at, triangle.witness});
+            from_vertices.push_back(from_vertices[number]);
             triangle.witness = static_cast<std::int32_t>(places.size() - 1);
         }
     }

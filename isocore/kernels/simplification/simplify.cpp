@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "common/parallel.hpp"
 #include "common/parallel_each.hpp"
+#include "simplification/apart.hpp"
 #include "simplification/contraction.hpp"
 #include "simplification/measuring.hpp"
 #include "simplification/sweeps.hpp"
@@ -17,29 +19,27 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr std::int32_t kBoxCells = 32;
 constexpr int kPhases = 4;
 constexpr float kFirstLimit = 1.0f / 16;  // cells, where a number of triangles is asked for
 // How far the boxes of each phase are shifted along each axis, in quarters of a box.
 constexpr std::array<std::array<std::int32_t, 3>, kPhases> kShifts{std::array{0, 0, 0}, std::array{2, 2, 2},
                                                                    std::array{1, 3, 1}, std::array{3, 1, 3}};
 
-// Two that know nothing of each other, and are built at the same time.
 template <class Real>
-struct Surfaces {
-    std::unique_ptr<Reference<Real>> reference;
-    std::unique_ptr<Mesh<Real>> mesh;
-
-    Surfaces(const MeshArrays<Real>& input, const MeshArrays<Real>& stands_for, const Cells& cells,
-             const Options& options) {
-        parallel_for(options.threads, 2, [&](std::size_t n) {
-            if (n == 0)
-                mesh = std::make_unique<Mesh<Real>>(input, cells, options.stretch, options.rounding, options.threads);
-            else
-                reference = std::make_unique<Reference<Real>>(stands_for, cells);
-        });
+void check(const MeshArrays<Real>& input) {
+    for (std::size_t n = 0; n < 3 * input.triangle_count; ++n) {
+        if (static_cast<std::size_t>(static_cast<std::uint32_t>(input.triangles[n])) >= input.vertex_count)
+            throw std::invalid_argument("a triangle names a vertex that does not exist");
     }
-};
+}
+
+// Can the first phase make a mesh for each box? Rounding lets triangles of neighbouring boxes meet, a number of
+// triangles asked for is reached by edges of the whole mesh, and witnesses are looked for in all of it.
+template <class Real>
+bool goes_apart(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
+    return input.vertices == reference.vertices && input.triangles == reference.triangles && input.written == nullptr &&
+           options.rounding == 0 && options.most_triangles == 0;
+}
 
 template <class Real>
 class Simplification {
@@ -49,29 +49,30 @@ class Simplification {
           options_(options),
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
-          surfaces_(input, reference, cells_, options),
-          mesh_(*surfaces_.mesh),
-          grid_(cells_, options.rounding),
-          costs_(mesh_.vertex_count()) {
-        for (int n = 0; n < std::max(options.threads, 1); ++n)
-            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, *surfaces_.reference, grid_, limit_));
-        for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options.max_error));
-        enter_triangles();
-        find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
-        if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
-        if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
+          mesh_(options.stretch, options.rounding),
+          grid_(cells_, options.rounding) {
+        if (goes_apart(input, reference, options)) {
+            reference_ = std::make_unique<Reference<Real>>(reference, cells_);
+            tally_ = contract_apart(*reference_, limit_, options, mesh_);
+            first_phase_ = 1;
+            prepare_workers();
+        } else {
+            parallel_for(options.threads, 2, [&](std::size_t n) {  // two that know nothing of each other
+                if (n == 0)
+                    mesh_.take_all(input, cells_, options.threads);
+                else
+                    reference_ = std::make_unique<Reference<Real>>(reference, cells_);
+            });
+            prepare_workers();
+            find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
+            if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
+            if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
+        }
     }
 
-    // Contracts edges that lie in a box with all that they change, each box for itself.
-    void run(int phase) {
-        const std::vector<std::vector<std::int32_t>> boxes = find_boxes(kShifts[static_cast<std::size_t>(phase)]);
-        std::atomic<std::size_t> next{0};
-        parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
-            for (std::size_t box = next++; box < boxes.size(); box = next++) {
-                enter_box(boxes[box], phase, workers_[worker]->backward());
-                sweep(boxes[box], mesh_, *workers_[worker], costs_, std::numeric_limits<std::size_t>::max());
-            }
-        });
+    // The phases that are still to come.
+    void run() {
+        for (int phase = first_phase_; phase < kPhases; ++phase) run(phase);
     }
 
     // Contracts the cheapest edges of the whole mesh until no more triangles than asked for are left: as many as a
@@ -100,24 +101,44 @@ class Simplification {
 
     Simplified<Real> take() {
         Simplified<Real> out;
-        mesh_.take(input_, out);
-        for (const auto& worker : workers_) {
-            out.facts.collapses += worker->collapses;
-            for (const auto& refused : worker->refused()) {
-                for (std::size_t n = 0; n < kRules; ++n) out.facts.refused[n] += refused[n];
-            }
-        }
+        mesh_.give(input_, out);
+        for (const auto& worker : workers_) tally_.add({worker->collapses, worker->refused()});
+        out.facts.collapses = tally_.collapses;
         out.facts.sheets.resize(input_.sheet_count);
+        for (std::size_t sheet = 0; sheet < tally_.refused.size(); ++sheet) {
+            const auto& refused = tally_.refused[sheet];
+            for (std::size_t n = 0; n < kRules; ++n) out.facts.refused[n] += refused[n];
+            if (sheet < out.facts.sheets.size()) out.facts.sheets[sheet].refused = refused;
+        }
         const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
                          static_cast<float>(options_.other[2])};
         std::vector<Backward<Real>*> provers;
         for (auto& worker : workers_) provers.push_back(&worker->backward());
         measure(mesh_, provers, limit_, other, out.facts);
-        describe_sheets(out.facts);
         return out;
     }
 
   private:
+    void prepare_workers() {
+        costs_.resize(mesh_.vertex_count());
+        for (int n = 0; n < std::max(options_.threads, 1); ++n)
+            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, *reference_, grid_, limit_));
+        for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options_.max_error));
+        enter_triangles();
+    }
+
+    // Contracts edges that lie in a box with all that they change, each box for itself.
+    void run(int phase) {
+        const std::vector<std::vector<std::int32_t>> boxes = find_boxes(kShifts[static_cast<std::size_t>(phase)]);
+        std::atomic<std::size_t> next{0};
+        parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
+            for (std::size_t box = next++; box < boxes.size(); box = next++) {
+                enter_box(boxes[box], phase, workers_[worker]->backward());
+                sweep(boxes[box], mesh_, *workers_[worker], costs_, std::numeric_limits<std::size_t>::max());
+            }
+        });
+    }
+
     // Nothing is further away from anything.
     double farthest() const {
         double sum = 1;
@@ -209,20 +230,14 @@ class Simplification {
         });
     }
 
-    void describe_sheets(Facts& facts) const {
-        for (std::size_t sheet = 0; sheet < facts.sheets.size(); ++sheet) {
-            for (const auto& worker : workers_) {
-                for (std::size_t n = 0; n < kRules; ++n) facts.sheets[sheet].refused[n] += worker->refused()[sheet][n];
-            }
-        }
-    }
-
     MeshArrays<Real> input_;
     const Options& options_;
     Cells cells_;
     float limit_;
-    Surfaces<Real> surfaces_;
-    Mesh<Real>& mesh_;
+    Mesh<Real> mesh_;
+    std::unique_ptr<Reference<Real>> reference_;
+    Tally tally_;  // of the first phase, where that is done apart
+    int first_phase_ = 0;
     TriangleGrid grid_;
     std::vector<float> costs_;
     std::vector<std::unique_ptr<Contraction<Real>>> workers_;
@@ -233,11 +248,12 @@ class Simplification {
 template <class Real>
 Simplified<Real> simplify(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
     if (input.triangle_count == 0) return {};
+    check(input);
     Simplification<Real> simplification(input, reference, options);
     if (options.most_triangles > 0) {
         simplification.run_to_count();
     } else {
-        for (int phase = 0; phase < kPhases; ++phase) simplification.run(phase);
+        simplification.run();
     }
     return simplification.take();
 }

@@ -6,11 +6,17 @@
 
 namespace isocore::simplification {
 
-TriangleGrid::TriangleGrid(const Cells& cells, double rounding) : cells_(cells), rounding_(rounding * cells.per_cell) {
+TriangleGrid::TriangleGrid(const Cells& cells, double rounding) : rounding_(rounding * cells.per_cell) {
+    chunks_.reserve(kMostChunks);  // so that they never move while others read them
+    cover(cells);
+}
+
+void TriangleGrid::cover(const Cells& cells) {
+    cells_ = cells;
     for (std::size_t a = 0; a < 3; ++a) dims_[a] = ((cells.dims[a] - 1) >> kBits) + 1;
     first_.resize(dims_[0] * dims_[1] * dims_[2]);
     std::fill(first_.begin(), first_.end(), kNone);
-    chunks_.reserve(kMostChunks);  // so that they never move while others read them
+    chunks_.clear();
 }
 
 template <class Real>

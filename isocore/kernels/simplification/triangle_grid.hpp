@@ -29,6 +29,8 @@ class TriangleGrid {
 
     // rounding: how far writing moves a corner along each axis, in coordinates; a triangle touches what it then may.
     TriangleGrid(const Cells& cells, double rounding);
+    // Forgets all triangles, and covers other cells of the same size. What lies outside of them counts to the nearest.
+    void cover(const Cells& cells);
 
     // Appends the cubes that a triangle touches, by number, and perhaps a few that it nearly does. The same for the
     // same places.

@@ -84,6 +84,11 @@ struct MeshArrays {
     std::size_t sheet_count = 0;
     // Where each vertex is written, x, y, z: elsewhere, since it is turned, stretched and rounded. None where it stays.
     const double* written = nullptr;
+
+    std::array<Real, 3> place(std::int32_t vertex) const {
+        const Real* const at = vertices + 3 * static_cast<std::size_t>(vertex);
+        return {at[0], at[1], at[2]};
+    }
 };
 
 }  // namespace isocore::simplification

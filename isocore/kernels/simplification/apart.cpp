@@ -1,0 +1,164 @@
+#include "simplification/apart.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "common/large_pages.hpp"
+#include "common/parallel.hpp"
+#include "simplification/contraction.hpp"
+#include "simplification/morton.hpp"
+#include "simplification/part.hpp"
+#include "simplification/remains.hpp"
+#include "simplification/sweeps.hpp"
+
+namespace isocore::simplification {
+namespace {
+
+// A thread's: what the mesh of one box after the other is made of.
+template <class Real>
+class Worker {
+  public:
+    Worker(const Reference<Real>& reference, float limit, const Options& options)
+        : reference_(reference),
+          finder_(reference),
+          mesh_(options.stretch, options.rounding),
+          grid_({}, options.rounding),
+          contraction_(mesh_, reference, grid_, limit) {
+        contraction_.backward().prove_all(std::isfinite(options.max_error));
+    }
+
+    Remains contract(const Cell& low, const Cell& high) {
+        finder_.find(low, high, part_);
+        mesh_.take(reference_.mesh(), part_);
+        if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
+        find_movable();
+        if (!movable_.empty()) {
+            enter_triangles(low, high);
+            contraction_.start_over();
+            contraction_.backward().enter_box(low, high, contraction_.limit());
+            costs_.resize(mesh_.vertex_count());
+            sweep(movable_, mesh_, contraction_, costs_, std::numeric_limits<std::size_t>::max());
+        }
+        return mesh_.remains(part_);
+    }
+
+    Tally tally() const { return {contraction_.collapses, contraction_.refused()}; }
+
+  private:
+    // Those in the box with all their neighbours.
+    void find_movable() {
+        movable_.clear();
+        for (std::size_t v = part_.first_own; v < part_.end_own; ++v) {
+            Vertex& vertex = mesh_.vertices[v];
+            vertex.movable = vertex.may_move() && std::all_of(vertex.ring, vertex.ring + vertex.count, [&](auto t) {
+                                 const auto& corners = mesh_.triangles[static_cast<std::size_t>(t)].corners;
+                                 return std::all_of(corners.begin(), corners.end(),
+                                                    [&](std::int32_t corner) { return part_.is_own(corner); });
+                             });
+            if (vertex.movable) movable_.push_back(static_cast<std::int32_t>(v));
+        }
+    }
+
+    void enter_triangles(const Cell& low, const Cell& high) {
+        Cells cells = reference_.cells();
+        for (std::size_t a = 0; a < 3; ++a) {
+            cells.origin[a] += low[a] / cells.per_cell;
+            cells.dims[a] = static_cast<std::size_t>(high[a] - low[a] + 1);
+        }
+        grid_.cover(cells);
+        TriangleGrid::Spare spare;
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const auto triangle = static_cast<std::int32_t>(t);
+            cubes_.clear();
+            grid_.cubes_of(mesh_, triangle, cubes_);
+            grid_.enter(triangle, cubes_, spare);
+        }
+    }
+
+    const Reference<Real>& reference_;
+    PartFinder<Real> finder_;
+    Part part_;
+    Mesh<Real> mesh_;
+    TriangleGrid grid_;
+    Contraction<Real> contraction_;
+    std::vector<std::int32_t> movable_, cubes_;
+    std::vector<float> costs_;
+};
+
+struct BoxOfCells {
+    Cell low, high;      // both included
+    std::uint64_t key;   // in the order of Morton
+    std::size_t weight;  // how many triangles it has, about
+};
+
+// Those that hold triangles, in the order of Morton.
+template <class Real>
+std::vector<BoxOfCells> find_boxes(const Reference<Real>& reference) {
+    const Cells& cells = reference.cells();
+    std::array<std::int32_t, 3> last;
+    for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<std::int32_t>(cells.dims[a] - 1);
+    std::vector<BoxOfCells> out;
+    Cell low;
+    for (low[2] = 0; low[2] <= last[2]; low[2] += kBoxCells) {
+        for (low[1] = 0; low[1] <= last[1]; low[1] += kBoxCells) {
+            for (low[0] = 0; low[0] <= last[0]; low[0] += kBoxCells) {
+                BoxOfCells box{low, low, morton(low, 0), 0};
+                Cell before = low;  // where triangles lie that end at a vertex of the box
+                for (std::size_t a = 0; a < 3; ++a) {
+                    before[a] = std::max(low[a] - 1, 0);
+                    box.high[a] = std::min(low[a] + kBoxCells - 1, last[a]);
+                }
+                reference.each_run_between(before, box.high,
+                                           [&](std::uint32_t first, std::uint32_t end) { box.weight += end - first; });
+                if (box.weight > 0) out.push_back(box);
+            }
+        }
+    }
+    std::sort(out.begin(), out.end(),
+              [](const BoxOfCells& one, const BoxOfCells& other) { return one.key < other.key; });
+    return out;
+}
+
+}  // namespace
+
+void Tally::add(const Tally& other) {
+    collapses += other.collapses;
+    refused.resize(std::max(refused.size(), other.refused.size()));
+    for (std::size_t sheet = 0; sheet < other.refused.size(); ++sheet) {
+        for (std::size_t n = 0; n < kRules; ++n) refused[sheet][n] += other.refused[sheet][n];
+    }
+}
+
+template <class Real>
+Tally contract_apart(const Reference<Real>& reference, float limit, const Options& options, Mesh<Real>& mesh) {
+    const std::vector<BoxOfCells> boxes = find_boxes(reference);
+    std::vector<std::size_t> order(boxes.size());  // the longest first, so that no thread is left with one at the end
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t one, std::size_t other) { return boxes[one].weight > boxes[other].weight; });
+    std::vector<Remains> parts(boxes.size());
+    const auto count = std::min(boxes.size(), static_cast<std::size_t>(std::max(options.threads, 1)));
+    std::vector<Tally> found(count);
+    std::atomic<std::size_t> next{0};
+    parallel_for(options.threads, count, [&](std::size_t number) {
+        Worker<Real> worker(reference, limit, options);
+        for (std::size_t n = next++; n < boxes.size(); n = next++)
+            parts[order[n]] = worker.contract(boxes[order[n]].low, boxes[order[n]].high);
+        found[number] = worker.tally();
+    });
+    return_freed_memory();
+    mesh.take(reference.mesh(), parts);
+    return_freed_memory();
+    Tally sum;
+    for (const Tally& one : found) sum.add(one);
+    return sum;
+}
+
+template Tally contract_apart(const Reference<float>&, float, const Options&, Mesh<float>&);
+template Tally contract_apart(const Reference<double>&, float, const Options&, Mesh<double>&);
+
+}  // namespace isocore::simplification
