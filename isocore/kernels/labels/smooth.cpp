@@ -94,9 +94,17 @@ void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads
 
 void smooth(LabelMesh& mesh, int rounds, int threads) {
     if (rounds <= 0) return;
-    Places places = places_of(mesh.vertices.data(), mesh.elements.size(), threads);
+    const std::size_t count = mesh.elements.size();
+    Places places = places_of(mesh.vertices.data(), count, threads);
+    Array<float>().swap(mesh.vertices);  // the places say as much
     run({mesh.elements, mesh.triangles, false}, mesh, rounds, threads, places);
-    write_back(places, mesh.elements, mesh.vertices.data(), threads);
+    return_freed_memory();
+    mesh.vertices = large_array<float>(3 * count);
+    share_vertices(threads, count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n) {
+            for (std::size_t axis = 0; axis < 3; ++axis) mesh.vertices[3 * n + axis] = places[n][axis];
+        }
+    });
 }
 
 template <class Coordinate>
