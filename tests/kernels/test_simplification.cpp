@@ -102,7 +102,7 @@ void apart_as_together() {
         labels.push_back(sample < -0.5f ? 0 : sample < 0.3f ? 1 : sample < 1 ? 2 : 3);
     const std::vector<double> values{0, 1, 2, 3};
     const std::vector<std::uint32_t> ranks{0, 1, 2, 3};
-    auto mesh = labels::extract<const std::uint8_t>({labels.data(), volume.dims}, {values, ranks}, 1);
+    auto mesh = labels::extract<std::uint8_t>({labels.data(), volume.dims}, {values, ranks}, 1);
     const auto sheets = labels::take_sheets(mesh);
     apart_as_together({mesh.vertices.data(), mesh.vertices.size() / 3, mesh.triangles.data(), mesh.triangles.size() / 3,
                        sheets.of_triangles.data(), sheets.pairs.size() / 2});
