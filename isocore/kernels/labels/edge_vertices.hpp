@@ -18,7 +18,9 @@
 namespace isocore::labels {
 
 // The vertices of grid edges, which slide along them, with their rings of neighbours. They are sorted by the size of
-// their ring, block by block, so that loops over a ring have one length many times over.
+// their ring, block by block, so that loops over a ring have one length many times over. Way: holds the difference of
+// any two neighbours' numbers.
+template <class Way>
 class EdgeVertices {
   public:
     explicit EdgeVertices(const Shape& shape) : triangles_(shape.triangles), ends_(find_ends(shape)) {
@@ -45,7 +47,7 @@ class EdgeVertices {
     // Moves those of a block by one step, from their places in `from` to those in `to`.
     void step(std::size_t block, const Places& from, Places& to, float factor, bool new_normals) {
         // Nearly all rings have three to eight neighbours: loops of a length that the compiler knows.
-        using Self = EdgeVertices;
+        using Self = EdgeVertices<Way>;
         constexpr std::array kMoves{&Self::move<0>, &Self::move<0>, &Self::move<0>, &Self::move<3>, &Self::move<4>,
                                     &Self::move<5>, &Self::move<6>, &Self::move<7>, &Self::move<8>};
         for (std::size_t n = blocks_[block]; n < blocks_[block + 1]; ++n) {
@@ -83,7 +85,7 @@ class EdgeVertices {
         blocks_.push_back(runs_.size());
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
         normal_ = large_array<Lanes>(mesh.elements.size());
-        ring_ = large_array<std::uint32_t>(first);
+        ring_ = large_array<Way>(first);
         auto place = large_array<std::uint32_t>(mesh.elements.size());
         std::fill(place.begin(), place.end(), kNone);
         for (const Run& run : runs_) {
@@ -102,11 +104,13 @@ class EdgeVertices {
                 for (std::size_t n = 0; n < 3; ++n) {
                     const auto v = static_cast<std::size_t>(triangles_[t + n]);
                     if (!share.holds(triangles_[t + n]) || place[v] == kNone) continue;
-                    ring_[place[v]++] = static_cast<std::uint32_t>(triangles_[t + (n + 1) % 3]);
+                    ring_[place[v]++] = static_cast<Way>(triangles_[t + (n + 1) % 3] - triangles_[t + n]);
                 }
             }
             for (std::size_t v = share.begin; v < share.end && !ends_.empty(); ++v) {
-                if (place[v] != kNone && ends_[v] != kNone) ring_[place[v]] = ends_[v];
+                if (place[v] != kNone && ends_[v] != kNone)
+                    ring_[place[v]] =
+                        static_cast<Way>(static_cast<std::int32_t>(ends_[v]) - static_cast<std::int32_t>(v));
             }
         });
     }
@@ -144,14 +148,14 @@ class EdgeVertices {
     void move(const Run& run, const Places& from, Places& to, float factor) const {
         const std::size_t ring = known == 0 ? run.ring : known;
         const float share = 1 / static_cast<float>(ring);
-        const std::uint32_t* neighbour = ring_.data() + run.first;
+        const Way* way = ring_.data() + run.first;
         // Where a vertex is, and how far the mean of its neighbours lies above its plane: the terms of a sum.
         const auto look = [&](std::size_t n, float& at) {
             Lanes sum{};
-            for (std::size_t m = 0; m < ring; ++m) sum += from[*neighbour++];
-            const Lanes& own = from[vertex_[n]];
-            at = own[axis_[n]];
-            return normal_[vertex_[n]] * (share * sum - own);
+            const Lanes* const own = from.data() + vertex_[n];
+            for (std::size_t m = 0; m < ring; ++m) sum += own[*way++];
+            at = (*own)[axis_[n]];
+            return normal_[vertex_[n]] * (share * sum - *own);
         };
         std::size_t n = run.begin;
         for (; n + 4 <= run.end; n += 4) {
@@ -177,7 +181,7 @@ class EdgeVertices {
     std::vector<std::uint8_t> axis_;
     std::vector<Run> runs_;
     std::vector<std::size_t> blocks_;  // where each block's runs begin
-    Array<std::uint32_t> ring_;        // the next corner of each triangle around a vertex
+    Array<Way> ring_;                  // from a vertex to the next corner of each triangle around it
     Array<Lanes> normal_;  // of every vertex: by its own component along the axis, which is at least kSteepest
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -58,13 +59,15 @@ void write_back(const Places& places, std::span<const Element> elements, Coordin
     });
 }
 
-// Moves `from` by so many rounds. curves_of: the mesh, if any vertices lie on curves.
-void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads, Places& from) {
+// Moves `from` by so many rounds. curves_of: the mesh, if any vertices lie on curves. far: how far apart the numbers of
+// neighbours are at most, which a Way holds.
+template <class Way>
+void run_with(const Shape& shape, const LabelMesh& curves_of, std::size_t far, int rounds, int threads, Places& from) {
     Places to = large_array<Lanes>(from.size());
     share_vertices(threads, from.size(), [&](std::size_t begin, std::size_t end) {
         std::copy_n(from.data() + begin, end - begin, to.data() + begin);
     });
-    std::optional<EdgeVertices> edges;
+    std::optional<EdgeVertices<Way>> edges;
     std::optional<CurveVertices> curves;
     parallel_for(threads, 2, [&](std::size_t n) {
         if (n == 0)
@@ -73,7 +76,7 @@ void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads
             curves.emplace(curves_of);
     });
     edges->find_neighbours(shape, threads);
-    const std::size_t reach = farthest_corners(shape.triangles, threads) / kBlock + 1;
+    const std::size_t reach = far / kBlock + 1;
     for (int first = 0; first < rounds;) {
         const int steps = std::min(rounds - first, first == 0 ? kSamePace / 2 : kSamePace);
         edges->renew_normals(from, threads);
@@ -88,6 +91,14 @@ void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads
         if (steps % 2 != 0) std::swap(from, to);
         first += steps;
     }
+}
+
+void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads, Places& from) {
+    const std::size_t far = farthest_corners(shape.triangles, threads);
+    if (far <= std::numeric_limits<std::int16_t>::max())
+        run_with<std::int16_t>(shape, curves_of, far, rounds, threads, from);
+    else
+        run_with<std::int32_t>(shape, curves_of, far, rounds, threads, from);
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ class LabelSurfaces {
         const nb::gil_scoped_release unlocked;
         const std::lock_guard<std::mutex> alone(one_at_a_time_);
         labels::smooth(mesh_, rounds, threads);
+        return_freed_memory();
     }
 
     nb::object solid(std::size_t rank, const NamedTuple& label_solid) {

@@ -146,8 +146,11 @@ Tally contract_apart(const Reference<Real>& reference, float limit, const Option
     std::atomic<std::size_t> next{0};
     parallel_for(options.threads, count, [&](std::size_t number) {
         Worker<Real> worker(reference, limit, options);
-        for (std::size_t n = next++; n < boxes.size(); n = next++)
+        constexpr std::size_t kAtOnce = 16;  // boxes, after which the system gets back what they left between remains
+        for (std::size_t n = next++; n < boxes.size(); n = next++) {
             parts[order[n]] = worker.contract(boxes[order[n]].low, boxes[order[n]].high);
+            if (n % kAtOnce == 0) return_freed_memory();
+        }
         found[number] = worker.tally();
     });
     return_freed_memory();

@@ -203,25 +203,36 @@ Quadric Mesh<Real>::planes_around(std::int32_t number) const {
 
 template <class Real>
 void Mesh<Real>::give(const MeshArrays<Real>& input, Simplified<Real>& out) const {
-    Array<std::int32_t> there(input.vertex_count, kNone), numbers(vertex_count());  // of the input's vertices; in out
+    std::vector<std::int32_t> order;
+    const auto sort = [&](const Array<std::int32_t>& from) {
+        std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+            return from[static_cast<std::size_t>(a)] < from[static_cast<std::size_t>(b)];
+        });
+    };
     for (std::size_t v = 0; v < vertex_count(); ++v) {
-        if (vertices[v].count > 0) there[static_cast<std::size_t>(from_vertices[v])] = static_cast<std::int32_t>(v);
+        if (vertices[v].count > 0) order.push_back(static_cast<std::int32_t>(v));
     }
-    for (std::size_t n = 0; n < there.size(); ++n) {
-        if (there[n] == kNone) continue;
-        numbers[static_cast<std::size_t>(there[n])] = static_cast<std::int32_t>(out.kept.size());
-        for (std::size_t a = 0; a < 3; ++a) out.vertices.push_back(input.vertices[3 * n + a]);
-        out.kept.push_back(static_cast<std::int32_t>(n));
+    sort(from_vertices);
+    std::vector<std::int32_t> numbers(vertex_count());  // in out
+    out.vertices.reserve(3 * order.size());
+    out.kept.reserve(order.size());
+    for (const std::int32_t v : order) {
+        const std::int32_t from = from_vertices[static_cast<std::size_t>(v)];
+        numbers[static_cast<std::size_t>(v)] = static_cast<std::int32_t>(out.kept.size());
+        for (const Real at : input.place(from)) out.vertices.push_back(at);
+        out.kept.push_back(from);
     }
-    there.assign(input.triangle_count, kNone);
+    order.clear();
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (!triangles[t].is_gone()) there[static_cast<std::size_t>(from_triangles[t])] = static_cast<std::int32_t>(t);
+        if (!triangles[t].is_gone()) order.push_back(static_cast<std::int32_t>(t));
     }
-    for (std::size_t n = 0; n < there.size(); ++n) {
-        if (there[n] == kNone) continue;
-        for (const std::int32_t corner : triangles[static_cast<std::size_t>(there[n])].corners)
+    sort(from_triangles);
+    out.triangles.reserve(3 * order.size());
+    if (has_sheets()) out.left.reserve(order.size());
+    for (const std::int32_t t : order) {
+        for (const std::int32_t corner : triangles[static_cast<std::size_t>(t)].corners)
             out.triangles.push_back(numbers[static_cast<std::size_t>(corner)]);
-        if (has_sheets()) out.left.push_back(static_cast<std::int32_t>(n));
+        if (has_sheets()) out.left.push_back(from_triangles[static_cast<std::size_t>(t)]);
     }
 }
 

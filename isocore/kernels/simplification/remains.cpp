@@ -63,7 +63,13 @@ Remains Mesh<Real>::remains(const Part& part) const {
         out.along.push_back(
             {from_vertices[static_cast<std::size_t>(ends[0])], from_vertices[static_cast<std::size_t>(ends[1])]});
     }
+    out.shrink_to_fit();
     return out;
+}
+
+void Remains::shrink_to_fit() {
+    const auto shrink = [](auto&... lists) { (lists.shrink_to_fit(), ...); };
+    shrink(vertices, states, rings, quadrics, faces, witnesses, along);
 }
 
 // Appends what is left of one part after the other to a mesh, in their order. A vertex of a part still to come is

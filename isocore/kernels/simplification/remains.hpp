@@ -31,6 +31,8 @@ struct Remains {
     std::vector<std::int32_t> witnesses;             // of each in turn: vertices
     std::vector<std::array<std::int32_t, 2>> along;  // of each vertex on a curve
     std::size_t first_numbered = 0, triangles = 0;   // of the part
+
+    void shrink_to_fit();
 };
 
 }  // namespace isocore::simplification

@@ -149,30 +149,30 @@ class Simplification {
 
     // Some triangles' cubes at a time; each thread enters those that are its own.
     void enter_triangles() {
-        constexpr std::size_t kAtOnce = 4096;
+        constexpr std::size_t kAtOnce = 4096, kRuns = 8;
         const std::size_t count = mesh_.triangles.size(), shares = workers_.size();
-        std::vector<std::vector<std::array<std::int32_t, 2>>> all((count + kAtOnce - 1) / kAtOnce);
-        const auto find_cubes = [&](std::size_t n, auto& found) {
-            std::vector<std::int32_t> cubes;
-            found.clear();
-            for (std::size_t t = n * kAtOnce; t < std::min(count, (n + 1) * kAtOnce); ++t) {
-                cubes.clear();
-                grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
-                for (const std::int32_t cube : cubes) found.push_back({cube, static_cast<std::int32_t>(t)});
-            }
-        };
-        if (shares > 1) parallel_for(options_.threads, all.size(), [&](std::size_t n) { find_cubes(n, all[n]); });
-        parallel_for(options_.threads, shares, [&](std::size_t share) {
-            TriangleGrid::Spare spare;
-            for (std::size_t n = 0; n < all.size(); ++n) {
-                auto& some = all[shares == 1 ? 0 : n];
-                if (shares == 1) find_cubes(n, some);
-                for (const auto& [cube, triangle] : some) {
-                    if (static_cast<std::size_t>(cube) * shares / grid_.cube_count() == share)
-                        grid_.enter(triangle, {&cube, 1}, spare);
+        std::vector<TriangleGrid::Spare> spares(shares);
+        std::vector<std::vector<std::array<std::int32_t, 2>>> all(shares == 1 ? 1 : kRuns * shares);
+        for (std::size_t first = 0; first < count; first += all.size() * kAtOnce) {
+            parallel_for(options_.threads, all.size(), [&](std::size_t run) {
+                std::vector<std::int32_t> cubes;
+                all[run].clear();
+                const std::size_t begin = first + run * kAtOnce;
+                for (std::size_t t = begin; t < std::min(count, begin + kAtOnce); ++t) {
+                    cubes.clear();
+                    grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
+                    for (const std::int32_t cube : cubes) all[run].push_back({cube, static_cast<std::int32_t>(t)});
                 }
-            }
-        });
+            });
+            parallel_for(options_.threads, shares, [&](std::size_t share) {
+                for (const auto& some : all) {
+                    for (const auto& [cube, triangle] : some) {
+                        if (static_cast<std::size_t>(cube) * shares / grid_.cube_count() == share)
+                            grid_.enter(triangle, {&cube, 1}, spares[share]);
+                    }
+                }
+            });
+        }
     }
 
     // visit(vertex) of all, by all threads.
