@@ -34,7 +34,9 @@ class EdgeVertices {
     // What the first step needs besides: each vertex's neighbours.
     void find_neighbours(const Shape& shape, int threads) {
         shares_ = find_shares(shape, threads);
+        ring_ = large_array<Way>(ring_size_);
         fill(std::move(place_), threads);
+        normal_ = large_array<Lanes>(shape.elements.size());
     }
 
     std::size_t blocks() const { return blocks_.size() - 1; }
@@ -83,9 +85,9 @@ class EdgeVertices {
             }
         }
         blocks_.push_back(runs_.size());
+        ring_size_ = first;
+        axis_.reserve(vertex_.size());
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
-        normal_ = large_array<Lanes>(mesh.elements.size());
-        ring_ = large_array<Way>(first);
         auto place = large_array<std::uint32_t>(mesh.elements.size());
         std::fill(place.begin(), place.end(), kNone);
         for (const Run& run : runs_) {
@@ -181,7 +183,8 @@ class EdgeVertices {
     std::vector<std::uint8_t> axis_;
     std::vector<Run> runs_;
     std::vector<std::size_t> blocks_;  // where each block's runs begin
-    Array<Way> ring_;                  // from a vertex to the next corner of each triangle around it
+    std::size_t ring_size_ = 0;
+    Array<Way> ring_;      // from a vertex to the next corner of each triangle around it
     Array<Lanes> normal_;  // of every vertex: by its own component along the axis, which is at least kSteepest
 };
 

@@ -103,11 +103,19 @@ void run(const Shape& shape, const LabelMesh& curves_of, int rounds, int threads
 
 }  // namespace
 
-void smooth(LabelMesh& mesh, int rounds, int threads) {
-    if (rounds <= 0) return;
+namespace {
+
+// Moves the vertices while nothing else is there of the mesh but what that takes: their places say as much as they do,
+// and most ranks fit into a byte.
+template <class Rank>
+void smooth_with(LabelMesh& mesh, int rounds, int threads) {
     const std::size_t count = mesh.elements.size();
+    Array<Rank> sides(mesh.sides.size());
+    std::transform(mesh.sides.begin(), mesh.sides.end(), sides.begin(),
+                   [](std::uint32_t rank) { return static_cast<Rank>(rank); });
+    Array<std::uint32_t>().swap(mesh.sides);
     Places places = places_of(mesh.vertices.data(), count, threads);
-    Array<float>().swap(mesh.vertices);  // the places say as much
+    Array<float>().swap(mesh.vertices);
     run({mesh.elements, mesh.triangles, false}, mesh, rounds, threads, places);
     return_freed_memory();
     mesh.vertices = large_array<float>(3 * count);
@@ -116,6 +124,22 @@ void smooth(LabelMesh& mesh, int rounds, int threads) {
             for (std::size_t axis = 0; axis < 3; ++axis) mesh.vertices[3 * n + axis] = places[n][axis];
         }
     });
+    Places().swap(places);
+    mesh.sides.assign(sides.begin(), sides.end());
+}
+
+}  // namespace
+
+void smooth(LabelMesh& mesh, int rounds, int threads) {
+    if (rounds <= 0) return;
+    const auto highest = std::max_element(mesh.sides.begin(), mesh.sides.end());
+    if (highest == mesh.sides.end()) return;
+    if (*highest <= std::numeric_limits<std::uint8_t>::max())
+        smooth_with<std::uint8_t>(mesh, rounds, threads);
+    else if (*highest <= std::numeric_limits<std::uint16_t>::max())
+        smooth_with<std::uint16_t>(mesh, rounds, threads);
+    else
+        smooth_with<std::uint32_t>(mesh, rounds, threads);
 }
 
 template <class Coordinate>

@@ -145,13 +145,21 @@ Tally contract_apart(const Reference<Real>& reference, float limit, const Option
     std::vector<Tally> found(count);
     std::atomic<std::size_t> next{0};
     parallel_for(options.threads, count, [&](std::size_t number) {
-        Worker<Real> worker(reference, limit, options);
-        constexpr std::size_t kAtOnce = 16;  // boxes, after which the system gets back what they left between remains
+        // As remains become more, boxes become smaller, and so does what a worker has for them.
+        constexpr std::size_t kAtOnce = 16, kFewer = 2;
+        std::unique_ptr<Worker<Real>> worker;
+        std::size_t largest = 0;
         for (std::size_t n = next++; n < boxes.size(); n = next++) {
-            parts[order[n]] = worker.contract(boxes[order[n]].low, boxes[order[n]].high);
+            const BoxOfCells& box = boxes[order[n]];
+            if (worker == nullptr || kFewer * box.weight < largest) {
+                if (worker != nullptr) found[number].add(worker->tally());
+                worker = std::make_unique<Worker<Real>>(reference, limit, options);
+                largest = box.weight;
+            }
+            parts[order[n]] = worker->contract(box.low, box.high);
             if (n % kAtOnce == 0) return_freed_memory();
         }
-        found[number] = worker.tally();
+        if (worker != nullptr) found[number].add(worker->tally());
     });
     return_freed_memory();
     mesh.take(reference.mesh(), parts);

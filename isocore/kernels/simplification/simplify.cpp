@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/large_pages.hpp"
 #include "common/parallel.hpp"
 #include "common/parallel_each.hpp"
 #include "simplification/apart.hpp"
@@ -101,7 +102,6 @@ class Simplification {
 
     Simplified<Real> take() {
         Simplified<Real> out;
-        mesh_.give(input_, out);
         for (const auto& worker : workers_) tally_.add({worker->collapses, worker->refused()});
         out.facts.collapses = tally_.collapses;
         out.facts.sheets.resize(input_.sheet_count);
@@ -115,6 +115,10 @@ class Simplification {
         std::vector<Backward<Real>*> provers;
         for (auto& worker : workers_) provers.push_back(&worker->backward());
         measure(mesh_, provers, limit_, other, out.facts);
+        workers_.clear();
+        reference_.reset();
+        return_freed_memory();
+        mesh_.give(input_, out);
         return out;
     }
 
