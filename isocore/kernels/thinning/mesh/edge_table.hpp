@@ -1,5 +1,5 @@
-// edge_table.hpp - Numbers edges in the order in which they are first seen: a hash table with open addressing, small
-// enough for the fastest cache where it holds the edges of one lot of cells.
+// edge_table.hpp - Numbers edges in the order in which they are first seen: a hash table with open addressing, for the
+// edges of one lot of cells.
 #pragma once
 
 #include <algorithm>
@@ -25,79 +25,61 @@ inline std::int32_t high_point(EdgeKey edge) { return static_cast<std::int32_t>(
 
 class EdgeTable {
   public:
-    static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-    // Empties the table and makes room for about so many edges; it grows where there are more.
+    // Empties the table and makes room for about so many edges; it grows where there are many more. Whether a search
+    // must go on to another slot is unpredictable, so hardly one ever must.
     void start(std::size_t expected) {
-        slots_.assign(std::bit_ceil(2 * expected + kAtOnce), kEmpty);
-        places_.resize(slots_.size());
+        slots_.assign(std::bit_ceil(4 * expected + 1), 0);
         count_ = 0;
     }
 
-    // Writes the place of each edge among those seen so far, where a new edge gets the next one.
+    // Writes the place of each edge among those seen so far, where a new edge gets the next one. Slots count places
+    // from 1, and an empty slot leads to the edge that is searched for: so a search ends on one condition.
     void place(const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
-        for (std::size_t n = 0; n < size; n += kAtOnce) {
-            const std::size_t some = std::min(kAtOnce, size - n);
-            while (2 * (count_ + some) > slots_.size()) grow();
-            place_some(edges + n, some, out + n);
-        }
-    }
-
-    // The place of an edge, or kNone.
-    std::uint32_t find(EdgeKey edge) const {
-        const std::size_t slot = slot_of(edge, slots_.data(), slots_.size());
-        return slots_[slot] == edge ? places_[slot] : kNone;
-    }
-
-    std::size_t size() const { return count_; }
-    const EdgeKey* edges() const { return edges_.data(); }  // by place
-
-  private:
-    static constexpr EdgeKey kEmpty = ~EdgeKey{0};
-    static constexpr std::size_t kAtOnce = 64;
-
-    // The slot of an edge, or an empty one for it.
-    static std::size_t slot_of(EdgeKey edge, const EdgeKey* slots, std::size_t size) {
-        std::size_t slot = edge * std::uint64_t{0x9e3779b97f4a7c15} >> (64 - std::countr_zero(size));
-        // One condition for both ends of the search: which of them it will be is unpredictable.
-        while (std::min(slots[slot] ^ edge, slots[slot] ^ kEmpty) != 0) slot = (slot + 1) & (size - 1);
-        return slot;
-    }
-
-    // Whether an edge is new is unpredictable, so there is no branch on it.
-    void place_some(const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
+        while (2 * (count_ + size) > slots_.size()) grow();
         edges_.resize(std::max(edges_.size(), count_ + size + 1));
-        EdgeKey *const slots = slots_.data(), *const seen = edges_.data();
-        std::uint32_t* const places = places_.data();
-        const std::size_t slot_count = slots_.size();
-        std::size_t count = count_;
+        EdgeKey *const seen = edges_.data(), &wanted = seen[0];
+        std::uint32_t* const slots = slots_.data();
+        std::uint32_t count = count_;
+        const Slots slot_of(slots_.size());
         for (std::size_t n = 0; n < size; ++n) {
-            const EdgeKey edge = edges[n];
-            const std::size_t slot = slot_of(edge, slots, slot_count);
-            const bool found = slots[slot] == edge;
-            const std::uint32_t place = found ? places[slot] : static_cast<std::uint32_t>(count);
-            slots[slot] = edge;
-            places[slot] = place;
-            seen[count] = edge;
-            count += !found;
-            out[n] = place;
+            const EdgeKey edge = wanted = edges[n];
+            std::size_t slot = slot_of.first(edge);
+            while (seen[slots[slot]] != edge) slot = slot_of.next(slot);
+            if (slots[slot] == 0) {
+                slots[slot] = ++count;
+                seen[count] = edge;
+            }
+            out[n] = slots[slot] - 1;
         }
         count_ = count;
     }
 
+    std::size_t size() const { return count_; }
+    EdgeKey operator[](std::size_t place) const { return edges_[place + 1]; }
+
+  private:
+    // Where an edge may stand.
+    struct Slots {
+        explicit Slots(std::size_t size) : mask(size - 1), shift(64 - std::countr_zero(size)) {}
+        std::size_t first(EdgeKey edge) const { return edge * std::uint64_t{0x9e3779b97f4a7c15} >> shift; }
+        std::size_t next(std::size_t slot) const { return (slot + 1) & mask; }
+        std::size_t mask;
+        int shift;
+    };
+
     void grow() {
-        slots_.assign(2 * slots_.size(), kEmpty);
-        places_.resize(slots_.size());
-        for (std::size_t n = 0; n < count_; ++n) {
-            const std::size_t slot = slot_of(edges_[n], slots_.data(), slots_.size());
-            slots_[slot] = edges_[n];
-            places_[slot] = static_cast<std::uint32_t>(n);
+        slots_.assign(2 * slots_.size(), 0);
+        const Slots slot_of(slots_.size());
+        for (std::uint32_t place = 1; place <= count_; ++place) {
+            std::size_t slot = slot_of.first(edges_[place]);
+            while (slots_[slot] != 0) slot = slot_of.next(slot);
+            slots_[slot] = place;
         }
     }
 
-    Array<EdgeKey> slots_, edges_;
-    Array<std::uint32_t> places_;  // by slot
-    std::size_t count_ = 0;
+    Array<std::uint32_t> slots_;  // places from 1 on, or 0
+    Array<EdgeKey> edges_;        // the one that is searched for, then those seen
+    std::uint32_t count_ = 0;
 };
 
 }  // namespace isocore::thinning

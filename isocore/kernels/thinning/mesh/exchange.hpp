@@ -20,46 +20,35 @@ class Exchange {
             for (const EdgeAbroad& edge : drawn[lot].abroad) ++first_[edge.lot + std::size_t{1}];
         }
         for (std::size_t lot = 0; lot < lots; ++lot) first_[lot + 1] += first_[lot];
-        sent_.resize(first_.back());
+        edges_.resize(first_.back());
+        answers_.resize(first_.back());
         std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
         for (std::size_t lot = 0; lot < lots; ++lot) {
-            for (EdgeAbroad& edge : drawn[lot].abroad)
-                sent_[next[edge.lot]++] = {drawn[lot].edges[edge.place], &edge.vertex};
+            for (const EdgeAbroad& edge : drawn[lot].abroad) {
+                const std::size_t n = next[edge.lot]++;
+                edges_[n] = drawn[lot].edges[edge.place];
+                answers_[n] = &drawn[lot].vertex_of[edge.place];
+            }
         }
     }
 
     // Answers with the number of each vertex among the lot's own. Those that the lot has not seen itself come last.
-    void answer(std::size_t lot, Drawn& owner, DrawScratch& scratch) const {
-        const std::size_t first = first_[lot], count = first_[lot + 1] - first;
-        if (count == 0) return;
-        scratch.edges.resize(count);
-        scratch.places.resize(count);
-        for (std::size_t n = 0; n < count; ++n) scratch.edges[n] = sent_[first + n].edge;
-        scratch.table.start(count);
-        scratch.table.place(scratch.edges.data(), count, scratch.places.data());
-        scratch.vertices.assign(scratch.table.size(), EdgeTable::kNone);
-        std::uint32_t vertex = 0;
-        owner.for_own_edges([&](std::size_t place) {
-            const std::uint32_t sent = scratch.table.find(owner.edges[place]);
-            if (sent != EdgeTable::kNone) scratch.vertices[sent] = vertex;
-            ++vertex;
-        });
-        for (std::size_t n = 0; n < scratch.vertices.size(); ++n) {
-            if (scratch.vertices[n] != EdgeTable::kNone) continue;
-            scratch.vertices[n] = vertex++;
-            owner.received.push_back(scratch.table.edges()[n]);
+    void answer(std::size_t lot, Drawn& owner) const {
+        const std::size_t first = first_[lot], count = first_[lot + 1] - first, seen = owner.edges.size();
+        Array<std::uint32_t> places(count);
+        owner.edges.place(edges_.data() + first, count, places.data());
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::size_t place = places[n];
+            *answers_[first + n] =
+                place < seen ? owner.vertex_of[place] : owner.vertices + static_cast<std::uint32_t>(place - seen);
         }
-        for (std::size_t n = 0; n < count; ++n) *sent_[first + n].answer = scratch.vertices[scratch.places[n]];
+        owner.vertices += static_cast<std::uint32_t>(owner.edges.size() - seen);
     }
 
   private:
-    struct Sent {
-        EdgeKey edge;
-        std::uint32_t* answer;
-    };
-
     std::vector<std::size_t> first_;  // of every lot
-    Array<Sent> sent_;
+    Array<EdgeKey> edges_;
+    Array<std::uint32_t*> answers_;
 };
 
 }  // namespace isocore::thinning

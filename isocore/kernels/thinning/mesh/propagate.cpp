@@ -54,12 +54,12 @@ class Propagation {
         hexes_.run(crew_);
         lots_ = cut_into_lots(tets_, hexes_);
         if (scratch_.drawn.size() < lots()) scratch_.drawn.resize(lots());
-        for_lots([&](size_t lot, DrawScratch& mine) { draw(lot, mine); });
+        for_lots([&](size_t lot) { draw(lot); });
         const Exchange exchange(scratch_.drawn, lots());
-        for_lots([&](size_t lot, DrawScratch& mine) { exchange.answer(lot, drawn(lot), mine); });
+        for_lots([&](size_t lot) { exchange.answer(lot, drawn(lot)); });
         make_room(with_edges);
-        for_lots([&](size_t lot, DrawScratch& mine) { join(lot, mine.vertices); });
-        if (mesh_.vertices.size() > 3 * on_edges_) for_lots([&](size_t lot, DrawScratch&) { place_middles(lot); });
+        for_lots([&](size_t lot) { join(lot); });
+        if (mesh_.vertices.size() > 3 * on_edges_) for_lots([&](size_t lot) { place_middles(lot); });
         if (collapsed_) drop_collapsed(mesh_.triangles);
         mesh_.seeds = tets_.seeds() + hexes_.seeds();
         mesh_.visited = tets_.size() + hexes_.size();
@@ -70,30 +70,32 @@ class Propagation {
     size_t lots() const { return lots_.size() - 1; }
     Drawn& drawn(size_t lot) { return scratch_.drawn[lot]; }
 
-    // Calls work(lot, scratch) for all lots.
     template <class Work>
     void for_lots(const Work& work) {
-        if (scratch_.drawing.size() < crew_.size()) scratch_.drawing.resize(crew_.size());
-        crew_.share(lots(), [&](size_t member, size_t lot) { work(lot, scratch_.drawing[member]); });
+        crew_.share(lots(), [&](size_t, size_t lot) { work(lot); });
     }
 
-    void draw(size_t lot, DrawScratch& mine) {
+    void draw(size_t lot) {
         const Lot &begin = lots_[lot], &end = lots_[lot + 1];
         Drawn& out = drawn(lot);
         out.triangles.clear();
         out.middles.clear();
         out.abroad.clear();
-        out.received.clear();
-        mine.table.start(end.tet - begin.tet + 2 * (end.hex - begin.hex));
-        Drawing<Tet, Value>(field_, isovalue_, tets_).draw(begin.tet, end.tet, mine, out);
-        Drawing<Hex, Value>(field_, isovalue_, hexes_).draw(begin.hex, end.hex, mine, out);
-        out.edges.assign(mine.table.edges(), mine.table.edges() + mine.table.size());
+        out.edges.start(end.tet - begin.tet + 2 * (end.hex - begin.hex));
+        Drawing<Tet, Value>(field_, isovalue_, tets_).draw(begin.tet, end.tet, out);
+        Drawing<Hex, Value>(field_, isovalue_, hexes_).draw(begin.hex, end.hex, out);
+        out.vertex_of.resize(out.edges.size());
+        out.vertices = 0;
         for (size_t place = 0; place < out.edges.size(); ++place) {
             const int32_t point = low_point(out.edges[place]);
-            if (point < end.point) continue;
+            out.vertex_of[place] = out.vertices;
+            if (point < end.point) {
+                ++out.vertices;
+                continue;
+            }
             const auto next = std::upper_bound(lots_.begin(), lots_.end(), point,
                                                [](int32_t low, const Lot& other) { return low < other.point; });
-            out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(next - lots_.begin() - 1), 0});
+            out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(next - lots_.begin() - 1)});
         }
     }
 
@@ -101,7 +103,7 @@ class Propagation {
         places_.assign(1, {});
         for (size_t lot = 0; lot < lots(); ++lot) {
             const Places& before = places_.back();
-            places_.push_back({before.vertex + drawn(lot).vertices(), before.corner + drawn(lot).triangles.size(),
+            places_.push_back({before.vertex + drawn(lot).vertices, before.corner + drawn(lot).triangles.size(),
                                before.middle + drawn(lot).middles.size()});
         }
         on_edges_ = places_.back().vertex;
@@ -115,18 +117,21 @@ class Propagation {
     }
 
     // Places the lot's own vertices, and turns places among its edges into vertices.
-    void join(size_t lot, Array<uint32_t>& vertex_of) {
-        const Drawn& from = drawn(lot);
+    void join(size_t lot) {
+        Drawn& from = drawn(lot);
+        Array<uint32_t>& vertex_of = from.vertex_of;
         vertex_of.resize(from.edges.size());
+        auto abroad = from.abroad.begin();
         size_t vertex = places_[lot].vertex;
-        from.for_own_edges([&](size_t place) {
+        for (size_t place = 0; place < from.edges.size(); ++place) {
             if (place + kAhead < from.edges.size()) prefetch_points(from.edges[place + kAhead]);
+            if (abroad != from.abroad.end() && abroad->place == place) {
+                vertex_of[place] += static_cast<uint32_t>(places_[abroad++->lot].vertex);
+                continue;
+            }
             vertex_of[place] = static_cast<uint32_t>(vertex);
             place_vertex(from.edges[place], vertex++);
-        });
-        for (const EdgeKey edge : from.received) place_vertex(edge, vertex++);
-        for (const EdgeAbroad& edge : from.abroad)
-            vertex_of[edge.place] = static_cast<uint32_t>(places_[edge.lot].vertex) + edge.vertex;
+        }
         int32_t* out = mesh_.triangles.data() + places_[lot].corner;
         if (from.middles.empty())
             write_triangles(from.triangles, out, [&](uint32_t corner) { return vertex_of[corner]; });

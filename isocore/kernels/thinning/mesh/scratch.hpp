@@ -24,47 +24,24 @@ struct WalkScratch {
 
 // An edge whose vertex is another lot's.
 struct EdgeAbroad {
-    std::uint32_t place, lot, vertex;  // among the drawing lot's edges; whose it is; its number among that lot's
+    std::uint32_t place, lot;  // among the drawing lot's edges; whose it is
 };
 
 // What a lot of cells draws. A triangle's corners are places among the lot's edges, or, from kMiddles on, middles of
 // loops.
 struct Drawn {
     static constexpr std::uint32_t kMiddles = std::uint32_t{1} << 31;
-    Array<EdgeKey> edges;      // as they were first seen
-    Array<EdgeAbroad> abroad;  // those of them that are other lots', ascending
-    Array<EdgeKey> received;   // its own edges that only other lots have seen
+    EdgeTable edges;                 // as they were first seen; then those that only other lots have seen
+    Array<std::uint32_t> vertex_of;  // by place: the edge's vertex among those of its lot
+    std::uint32_t vertices;          // its own
+    Array<EdgeAbroad> abroad;        // the edges that are other lots', ascending
     Array<std::uint32_t> triangles;
     std::vector<std::array<std::uint32_t, 2>> middles;  // the triangles around each: first, end
-
-    // Calls visit(place) for the edges that are the lot's own.
-    template <class Visit>
-    void for_own_edges(const Visit& visit) const {
-        auto next = abroad.begin();
-        for (std::size_t place = 0; place < edges.size(); ++place) {
-            if (next != abroad.end() && next->place == place)
-                ++next;
-            else
-                visit(place);
-        }
-    }
-
-    std::size_t vertices() const { return edges.size() - abroad.size() + received.size(); }
-};
-
-// What one thread needs while it draws a lot.
-struct DrawScratch {
-    EdgeTable table;
-    Array<std::uint8_t> signs;      // which corners of every cell are inside
-    Array<EdgeKey> edges;           // the crossed edges of all cells, cell by cell
-    Array<std::uint32_t> places;    // of these among the lot's edges
-    Array<std::uint32_t> vertices;  // by place
 };
 
 struct Scratch {
     WalkScratch tets, hexes;
-    std::vector<Drawn> drawn;          // by lot
-    std::vector<DrawScratch> drawing;  // by thread
+    std::vector<Drawn> drawn;  // by lot
 };
 
 // Scratch memory for as many propagations as run at once.
