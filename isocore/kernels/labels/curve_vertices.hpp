@@ -17,9 +17,10 @@ namespace isocore::labels {
 // cells, and middles of cells.
 class CurveVertices {
   public:
-    explicit CurveVertices(const LabelMesh& mesh) {
+    // place: room for a number of each vertex, and one more.
+    CurveVertices(const LabelMesh& mesh, Array<std::uint32_t> place) {
         if (mesh.curves.empty()) return;
-        std::vector<std::uint32_t> place(mesh.elements.size() + 1, 0);  // of each vertex: where its neighbours begin
+        std::fill(place.begin(), place.end(), 0);  // where each vertex's neighbours begin
         const auto each = [&](const auto& visit) {
             for (std::size_t n = 0; n < mesh.curves.size(); n += 2) {
                 const auto face = static_cast<std::uint32_t>(mesh.curves[n]),

@@ -69,11 +69,13 @@ void run_with(const Shape& shape, const LabelMesh& curves_of, std::size_t far, i
     });
     std::optional<EdgeVertices<Way>> edges;
     std::optional<CurveVertices> curves;
+    // What other threads free stays with them: so the longest lists are made here.
+    Array<std::uint32_t> place(curves_of.curves.empty() ? 0 : shape.elements.size() + 1);
     parallel_for(threads, 2, [&](std::size_t n) {
         if (n == 0)
             edges.emplace(shape);
         else
-            curves.emplace(curves_of);
+            curves.emplace(curves_of, std::move(place));
     });
     edges->find_neighbours(shape, threads);
     const std::size_t reach = far / kBlock + 1;

@@ -20,6 +20,7 @@ std::vector<std::int32_t> others(const MeshArrays<Real>& input, const MeshArrays
         return std::array<Real, 3>{place[0], place[1], place[2]};
     };
     std::vector<std::int32_t> out;
+    out.reserve(reference.vertex_count - std::min(reference.vertex_count, input.vertex_count));
     std::size_t next = 0;
     for (std::size_t n = 0; n < reference.vertex_count; ++n) {
         if (next < input.vertex_count && at(input, next) == at(reference, n))
@@ -168,7 +169,7 @@ void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& refer
         triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
     });
     // Those of one triangle follow each other in memory.
-    std::vector<std::size_t> next(mesh.triangles.size() + 1);
+    std::vector<std::uint32_t> next(mesh.triangles.size() + 1);
     for (const std::int32_t triangle : triangles) ++next[static_cast<std::size_t>(triangle) + 1];
     for (std::size_t t = 0; t + 1 < next.size(); ++t) next[t + 1] += next[t];
     const std::size_t first = mesh.places.size();
