@@ -45,9 +45,9 @@ class Musts:
 
 
 MUSTS = {
-    "MNI T1": Musts(triangles=42_500, one=2.5, two=1.4, two_rival=1.0),
-    "bone": Musts(triangles=107_000, one=3.0, two=1.7, two_rival=1.0),
-    "t1_crop": Musts(triangles=190_000, one=3.0, two=1.7, two_rival=1.1),
+    "MNI T1": Musts(triangles=47_500, one=2.5, two=1.4, two_rival=1.0),
+    "bone": Musts(triangles=128_000, one=3.0, two=1.7, two_rival=1.0),
+    "t1_crop": Musts(triangles=215_000, one=3.0, two=1.7, two_rival=1.1),
 }
 LEAST_GAIN = 1.7
 

@@ -7,9 +7,9 @@
 namespace isocore::simplification {
 namespace {
 
-constexpr float kSmall = 6;            // cells: a longer triangle is halved before it is taken to pieces
-constexpr int kHalvings = 8;           // of a triangle and its pieces, one after the other
-constexpr int kMostHalvings = 128;     // of all pieces of a triangle
+constexpr float kSmall = 6;            // cells: a longer triangle is quartered before it is taken to pieces
+constexpr int kHalvings = 16;          // of a triangle and its pieces, one after the other
+constexpr int kMostHalvings = 384;     // of all pieces of a triangle
 constexpr float kLeastMargin = 0.01f;  // cells
 constexpr float kBoxMargin = 1e-3f;    // cells: more than rounding does to a box
 constexpr float kLeastHeight = 1e-3f;  // of its sides, that a triangle must have for a frame of its own
@@ -18,19 +18,24 @@ Spot between(const Spot& a, const Spot& b) {
     return {0.5f * (a[0] + b[0]), 0.5f * (a[1] + b[1]), 0.5f * (a[2] + b[2])};
 }
 
-float longest_side(const std::array<Spot, 3>& t) {
-    float most = 0;
+// The squared lengths of a triangle's sides, from each corner to the next.
+std::array<float, 3> squared_sides(const std::array<Spot, 3>& t) {
+    std::array<float, 3> out;
     for (std::size_t n = 0; n < 3; ++n) {
-        const Spot side = minus(t[n], t[(n + 1) % 3]);
-        most = std::max(most, dot(side, side));
+        const Spot side = minus(t[n], t[n == 2 ? 0 : n + 1]);
+        out[n] = dot(side, side);
     }
-    return std::sqrt(most);
+    return out;
+}
+
+float longest_side(const std::array<Spot, 3>& t) {
+    const auto squared = squared_sides(t);
+    return std::sqrt(*std::max_element(squared.begin(), squared.end()));
 }
 
 // The four similar triangles that a triangle's middles cut it into: those at its corners, then that in the middle.
-template <class Corner, class Middle>
-std::array<std::array<Corner, 3>, 4> quarters(const std::array<Corner, 3>& c, const Middle& middle) {
-    const Corner ab = middle(c[0], c[1]), bc = middle(c[1], c[2]), ca = middle(c[2], c[0]);
+std::array<std::array<Spot, 3>, 4> quarters(const std::array<Spot, 3>& c) {
+    const Spot ab = between(c[0], c[1]), bc = between(c[1], c[2]), ca = between(c[2], c[0]);
     return {std::array{c[0], ab, ca}, std::array{ab, c[1], bc}, std::array{ca, bc, c[2]}, std::array{ab, bc, ca}};
 }
 
@@ -124,7 +129,7 @@ bool Backward<Real>::is_near(const Corners& triangle, std::size_t depth) {
         distance_ = limit_;
         return facets_.size() > 0 && is_near_by_pieces(triangle);
     }
-    const auto parts = quarters(triangle, between);
+    const auto parts = quarters(triangle);
     return std::all_of(parts.begin(), parts.end(), [&](const Corners& part) {
         near_[depth + 1].select(near, Box::around(part, limit_ + kBoxMargin));
         return is_near(part, depth + 1);
@@ -163,15 +168,14 @@ bool Backward<Real>::is_near_by_halves(const Corners& t, const OfCorners& within
     }
     if (depth == 0 || halvings_ == 0) return false;
     --halvings_;
-    const auto parts = quarters(t, between);
-    Within ab, bc, ca;
-    if (!find_within(parts[3][0], ab) || !find_within(parts[3][1], bc) || !find_within(parts[3][2], ca)) return false;
-    const std::array<OfCorners, 4> of_parts{OfCorners{within[0], &ab, &ca}, OfCorners{&ab, within[1], &bc},
-                                            OfCorners{&ca, &bc, within[2]}, OfCorners{&ab, &bc, &ca}};
-    for (std::size_t n = 0; n < 4; ++n) {
-        if (!is_near_by_halves(parts[n], of_parts[n], depth - 1)) return false;
-    }
-    return true;
+    const auto squared = squared_sides(t);
+    const auto a = static_cast<std::size_t>(std::max_element(squared.begin(), squared.end()) - squared.begin());
+    const std::size_t b = a == 2 ? 0 : a + 1, c = b == 2 ? 0 : b + 1;
+    const Spot middle = between(t[a], t[b]);
+    Within of_middle;
+    return find_within(middle, of_middle) &&
+           is_near_by_halves({t[a], middle, t[c]}, {within[a], &of_middle, within[c]}, depth - 1) &&
+           is_near_by_halves({middle, t[b], t[c]}, {&of_middle, within[b], within[c]}, depth - 1);
 }
 
 // Of which facets does a point lie within the limit? False if there are none.

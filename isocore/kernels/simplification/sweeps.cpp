@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kAhead = 4;  // vertices
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // An edge is not tried where the planes of both ends lie further away than so many bounds, in the root mean square over
-// their areas. Of a hundred such edges, the rules would allow two.
-constexpr float kHopeless = 1.25f;
+// their areas. The rules would allow few of these, and their large faces take the longest to prove.
+constexpr float kHopeless = 0.8f;
 constexpr float kLeastBound = 1e-3f;  // cells: so that a bound of 0 leaves room for rounding
 
 template <class Real>
