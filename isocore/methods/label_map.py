@@ -38,8 +38,10 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     census = take_census(volume, background)
     ranks = label_ranks(census.values, background)
     surfaces = _kernels.label_surfaces(volume.samples, census.stored, ranks, options.threads)
+    surfaces.trim()
     if options.smooth:
         surfaces.smooth(options.smooth, options.threads)
+        surfaces.trim()
     fewer = None if simplifier is None else simplify_labels(surfaces, simplifier)
     neighbours = _neighbours(surfaces, census.values, ranks, background)
     rank_of = {int(value): int(rank) for value, rank in zip(census.values, ranks, strict=True) if rank}

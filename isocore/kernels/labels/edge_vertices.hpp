@@ -23,12 +23,14 @@ namespace isocore::labels {
 template <class Way>
 class EdgeVertices {
   public:
-    explicit EdgeVertices(const Shape& shape) : triangles_(shape.triangles), ends_(find_ends(shape)) {
+    // place: room for a number of each vertex.
+    EdgeVertices(const Shape& shape, Array<std::uint32_t> place)
+        : triangles_(shape.triangles), ends_(find_ends(shape)), place_(std::move(place)) {
         std::vector<std::uint8_t> sizes(shape.elements.size(), 0);
         for (const std::int32_t corner : shape.triangles) ++sizes[static_cast<std::size_t>(corner)];
         for (std::size_t v = 0; v < ends_.size(); ++v)
             sizes[v] = static_cast<std::uint8_t>(sizes[v] + (ends_[v] != kNone));
-        place_ = order(shape, sizes);
+        order(shape, sizes);
     }
 
     // What the first step needs besides: each vertex's neighbours.
@@ -65,8 +67,8 @@ class EdgeVertices {
         std::size_t begin, end, first, ring;
     };
 
-    // Returns where the ring of each vertex begins, or kNone.
-    Array<std::uint32_t> order(const Shape& mesh, const std::vector<std::uint8_t>& sizes) {
+    // Finds where the ring of each vertex begins, or kNone.
+    void order(const Shape& mesh, const std::vector<std::uint8_t>& sizes) {
         std::size_t first = 0;
         vertex_.reserve(sizes.size());
         std::array<std::vector<std::uint32_t>, 256> of_size;
@@ -88,14 +90,12 @@ class EdgeVertices {
         ring_size_ = first;
         axis_.reserve(vertex_.size());
         for (const std::uint32_t v : vertex_) axis_.push_back(static_cast<std::uint8_t>(mesh.elements[v] / 2));
-        auto place = large_array<std::uint32_t>(mesh.elements.size());
-        std::fill(place.begin(), place.end(), kNone);
+        std::fill(place_.begin(), place_.end(), kNone);
         for (const Run& run : runs_) {
             for (std::size_t n = run.begin; n < run.end; ++n) {
-                place[vertex_[n]] = static_cast<std::uint32_t>(run.first + (n - run.begin) * run.ring);
+                place_[vertex_[n]] = static_cast<std::uint32_t>(run.first + (n - run.begin) * run.ring);
             }
         }
-        return place;
     }
 
     // Each triangle at a vertex gives it the two others; as a ring closes, each neighbour comes first exactly once.

@@ -93,7 +93,6 @@ LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads)
                    large_array<std::uint32_t>(2 * starts[count].triangles),
                    large_array<std::int32_t>(starts[count].curves)};
     parallel_for(threads, count, [&](std::size_t n) { place_slab(slabs[n], starts[n], middles[n], mesh); });
-    return_freed_memory();
     return mesh;
 }
 

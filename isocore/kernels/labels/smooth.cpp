@@ -70,12 +70,13 @@ void run_with(const Shape& shape, const LabelMesh& curves_of, std::size_t far, i
     std::optional<EdgeVertices<Way>> edges;
     std::optional<CurveVertices> curves;
     // What other threads free stays with them: so the longest lists are made here.
-    Array<std::uint32_t> place(curves_of.curves.empty() ? 0 : shape.elements.size() + 1);
+    auto of_edges = large_array<std::uint32_t>(shape.elements.size());
+    auto of_curves = large_array<std::uint32_t>(curves_of.curves.empty() ? 0 : shape.elements.size() + 1);
     parallel_for(threads, 2, [&](std::size_t n) {
         if (n == 0)
-            edges.emplace(shape);
+            edges.emplace(shape, std::move(of_edges));
         else
-            curves.emplace(curves_of, std::move(place));
+            curves.emplace(curves_of, std::move(of_curves));
     });
     edges->find_neighbours(shape, threads);
     const std::size_t reach = far / kBlock + 1;
@@ -119,7 +120,6 @@ void smooth_with(LabelMesh& mesh, int rounds, int threads) {
     Places places = places_of(mesh.vertices.data(), count, threads);
     Array<float>().swap(mesh.vertices);
     run({mesh.elements, mesh.triangles, false}, mesh, rounds, threads, places);
-    return_freed_memory();
     mesh.vertices = large_array<float>(3 * count);
     share_vertices(threads, count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {

@@ -74,7 +74,6 @@ class LabelSurfaces {
         const nb::gil_scoped_release unlocked;
         const std::lock_guard<std::mutex> alone(one_at_a_time_);
         labels::smooth(mesh_, rounds, threads);
-        return_freed_memory();
     }
 
     nb::object solid(std::size_t rank, const NamedTuple& label_solid) {
@@ -191,6 +190,7 @@ void bind_labels(nb::module_& module) {
         .def_prop_ro("triangles", &LabelSurfaces::triangles)
         .def("neighbours", &LabelSurfaces::neighbours)
         .def("smooth", &LabelSurfaces::smooth, arg("rounds"), arg("threads") = 1)
+        .def("trim", [](const LabelSurfaces&) { return_freed_memory(); })
         .def(
             "simplify",
             [=](LabelSurfaces& all, double max_error, const std::array<double, 3>& stretch,
