@@ -13,6 +13,7 @@
 #include "marching_cubes/marching_cubes.hpp"
 #include "tables/mesh_cases.hpp"
 #include "thinning/grid/grid_thinning.hpp"
+#include "thinning/mesh/edge_table.hpp"
 #include "thinning/mesh/thinning.hpp"
 #include "thinning/range_lookup.hpp"
 #include "thinning/safe_rule.hpp"
@@ -142,6 +143,30 @@ void a_lookup_finds_every_interval_that_holds_a_value() {
 }
 
 // Every triangle has the inside corners of its cell behind it.
+void a_table_numbers_edges_in_their_order_while_it_grows() {
+    std::mt19937 random(4);
+    std::uniform_int_distribution<std::int32_t> point(0, 40);
+    thinning::EdgeTable table;
+    for (int run = 0; run < 3; ++run) {  // nothing is left of the run before
+        table.start(1);
+        std::vector<thinning::EdgeKey> seen;
+        for (int batch = 0; batch < 100; ++batch) {
+            std::vector<thinning::EdgeKey> edges(7);
+            for (auto& edge : edges) edge = thinning::edge_key(point(random), 41 + point(random));
+            std::vector<std::uint32_t> places(edges.size());
+            table.place(edges.data(), edges.size(), places.data());
+            for (std::size_t n = 0; n < edges.size(); ++n) {
+                const auto found = std::find(seen.begin(), seen.end(), edges[n]);
+                CHECK(places[n] == static_cast<std::size_t>(found - seen.begin()));
+                if (found == seen.end()) seen.push_back(edges[n]);
+                CHECK(table[places[n]] == edges[n]);
+            }
+            CHECK(table.size() == seen.size());
+        }
+        CHECK(seen.size() > 300);
+    }
+}
+
 void triangles_of_a_tetrahedron_face_outside() {
     constexpr std::array<std::array<double, 3>, 4> kPlaces{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (unsigned signs = 1; signs < 15; ++signs) {
@@ -197,6 +222,7 @@ void connectedness_is_that_of_corners_and_edges() {
 }  // namespace
 
 void test_thinning() {
+    a_table_numbers_edges_in_their_order_while_it_grows();
     triangles_of_a_tetrahedron_face_outside();
     no_hexahedron_draws_a_diagonal_in_a_face();
     connectedness_is_that_of_corners_and_edges();
