@@ -97,7 +97,7 @@ class Mesh {
     void take_all(const MeshArrays<Real>& input, const Cells& cells, int threads);
     void take(const MeshArrays<Real>& input, const Part& part);
     void take(const MeshArrays<Real>& input, std::vector<Remains>& parts);
-    // What is left of the part that was taken. Whoever counts on its vertices' quadrics has them in there.
+    // What is left of the part that was taken.
     Remains remains(const Part& part) const;
 
     std::size_t vertex_count() const { return vertices.size(); }
