@@ -1,6 +1,7 @@
 // One program, one line per file of tests. Runs under address and undefined-behaviour sanitizers: `make kernels`.
 #include <cstdio>
 
+void test_array();
 void test_bits();
 void test_crossing();
 void test_lanes();
@@ -24,6 +25,7 @@ void test_clusters();
 void test_waves();
 
 int main() {
+    test_array();
     test_bits();
     test_crossing();
     test_lanes();

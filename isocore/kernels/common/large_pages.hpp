@@ -21,10 +21,9 @@ namespace isocore {
 template <class T, class Allocator>
 void ask_for_large_pages([[maybe_unused]] std::vector<T, Allocator>& array) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-    constexpr std::uintptr_t kLarge = std::uintptr_t{1} << 21;
     const auto begin = reinterpret_cast<std::uintptr_t>(array.data());
-    const std::uintptr_t first = (begin + kLarge - 1) & ~(kLarge - 1),
-                         end = (begin + array.capacity() * sizeof(T)) & ~(kLarge - 1);
+    const std::uintptr_t first = (begin + kLargePage - 1) & ~(kLargePage - 1),
+                         end = (begin + array.capacity() * sizeof(T)) & ~(kLargePage - 1);
     if (first < end) static_cast<void>(madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE));
 #endif
 }
