@@ -58,6 +58,8 @@ class Simplification {
             first_phase_ = 1;
             prepare_workers();
         } else {
+            // Witnesses come behind the vertices, without a copy of these; room that stays empty takes no memory.
+            if (input.vertices != reference.vertices) mesh_.places.reserve(input.vertex_count + reference.vertex_count);
             parallel_for(options.threads, 2, [&](std::size_t n) {  // two that know nothing of each other
                 if (n == 0)
                     mesh_.take_all(input, cells_, options.threads);
@@ -66,6 +68,7 @@ class Simplification {
             });
             prepare_workers();
             find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
+            return_freed_memory();
             if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
             if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
         }

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "common/parallel_each.hpp"
@@ -168,18 +168,32 @@ void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& refer
         const std::array<Real, 3> at = place(n);
         triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
     });
-    // Those of one triangle follow each other in memory.
-    std::vector<std::uint32_t> next(mesh.triangles.size() + 1);
-    for (const std::int32_t triangle : triangles) ++next[static_cast<std::size_t>(triangle) + 1];
-    for (std::size_t t = 0; t + 1 < next.size(); ++t) next[t + 1] += next[t];
+    // Those of one triangle follow each other in memory. Until they are there, a triangle's first witness is where its
+    // next one goes.
+    for (Triangle& triangle : mesh.triangles) triangle.witness = 0;
+    std::size_t count = 0;
+    for (const std::int32_t triangle : triangles) {
+        if (triangle == kNone) continue;
+        ++mesh.triangles[static_cast<std::size_t>(triangle)].witness;
+        ++count;
+    }
     const std::size_t first = mesh.places.size();
-    mesh.places.resize(first + numbers.size());
+    auto end = static_cast<std::int32_t>(first);
+    for (Triangle& triangle : mesh.triangles) end += std::exchange(triangle.witness, end);
+    mesh.places.resize(first + count);
     for (std::size_t n = numbers.size(); n-- > 0;) {
         if (triangles[n] == kNone) continue;
-        Triangle& triangle = mesh.triangles[static_cast<std::size_t>(triangles[n])];
-        const std::size_t to = first + next[static_cast<std::size_t>(triangles[n])]++;
-        mesh.places[to] = {place(n), triangle.witness};
-        triangle.witness = static_cast<std::int32_t>(to);
+        const std::int32_t to = mesh.triangles[static_cast<std::size_t>(triangles[n])].witness++;
+        mesh.places[static_cast<std::size_t>(to)] = {place(n), to - 1};
+    }
+    auto begin = static_cast<std::int32_t>(first);
+    for (Triangle& triangle : mesh.triangles) {
+        const std::int32_t own_end = std::exchange(triangle.witness, kNone);
+        if (own_end > begin) {
+            mesh.places[static_cast<std::size_t>(begin)].next = kNone;
+            triangle.witness = own_end - 1;
+        }
+        begin = own_end;
     }
 }
 
