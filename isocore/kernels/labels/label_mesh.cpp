@@ -40,6 +40,32 @@ void load_plane(const GridView<Sample>& samples, const RankTable& ranks, std::si
     }
 }
 
+// How many vertices the layers `first` to `last` - 1 will have, at most in most maps: one for each two neighbours that
+// differ, of which those of every fourth row are counted, and some in the middles of faces and cells. An array that is
+// too small is copied as it grows, to pages that are new each time; what of it is too large costs nothing.
+template <class Sample>
+std::size_t expect_vertices(const GridView<Sample>& samples, std::size_t first, std::size_t last) {
+    constexpr std::size_t kStride = 4;
+    const auto [columns, rows, planes] = samples.dims;
+    std::size_t sum = 0;
+    const auto compare = [&](const Sample* one, const Sample* other, std::size_t count) {
+        for (std::size_t n = 0; n < count; ++n) sum += one[n] != other[n];
+    };
+    for (std::size_t k = std::max<std::size_t>(first, 1) - 1; k < std::min(last, planes); ++k) {
+        for (std::size_t j = k % kStride; j < rows; j += kStride) {
+            const Sample* const row = samples.row(j, k);
+            compare(row, row + 1, columns - 1);
+            if (j + 1 < rows) compare(row, samples.row(j + 1, k), columns);
+            if (k + 1 < planes) compare(row, samples.row(j, k + 1), columns);
+        }
+    }
+    return kStride * sum * 11 / 8;
+}
+
+struct Sizes {
+    std::size_t vertices = 0, triangles = 0, curves = 0;
+};
+
 // Moves a slab's mesh to its place in the whole, and frees it. A negative number names a vertex of the plane below,
 // whose vertices end where the middles of the layer below begin.
 void place_slab(SlabMesh& slab, const Sizes& at, std::size_t middles_below, LabelMesh& out) {
@@ -63,7 +89,8 @@ std::vector<SlabMesh> draw_slabs(const GridView<Sample>& samples, const RankTabl
         threads, slabs.size(), [&] { return Slab<Rank>(dims); },
         [&](Slab<Rank>& slab, std::size_t n) {
             const auto load = [&](std::size_t plane, Rank* out) { load_plane(samples, ranks, plane, out); };
-            slabs[n] = slab.draw(n * thick, std::min(layers, (n + 1) * thick), load);
+            const std::size_t first = n * thick, last = std::min(layers, first + thick);
+            slabs[n] = slab.draw(first, last, expect_vertices(samples, first, last), load);
         });
     return slabs;
 }

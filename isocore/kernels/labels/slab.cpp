@@ -3,28 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "common/cube.hpp"
 #include "common/large_pages.hpp"
 
 namespace isocore::labels {
 namespace {
-
-// A mark is looked for eight at a time: this many lie behind the last of a plane, all 0.
-constexpr std::size_t kWord = 8;
-
-std::uint64_t word_at(const std::vector<std::uint8_t>& marks, std::size_t at) {
-    std::uint64_t word;
-    std::memcpy(&word, marks.data() + at, kWord);
-    return word;
-}
-
-// Which byte of a word that was read from memory holds its lowest set bit.
-std::size_t lowest_byte(std::uint64_t word) {
-    const int bit = std::endian::native == std::endian::little ? std::countr_zero(word) : std::countl_zero(word);
-    return static_cast<std::size_t>(bit) / 8;
-}
 
 // Marks the squares that four rows of ranks bound, a and b along one line, c and d along the next: does what they show
 // have a vertex in the middle? Plain loops over bytes, for the compiler to vectorise.
@@ -62,50 +46,34 @@ const CellDisks& DiskCache::of(const CornerRanks& ranks) {
     return found != of_more_.end() ? found->second : of_more_.emplace(key, derive_disks(ranks)).first->second;
 }
 
+// One more row of background, and a word, lie behind every plane, so that looking at the next row needs no question.
 template <class Rank>
-Slab<Rank>::Slab(const Dims& dims) : dims_(dims), row_(dims[0]), plane_(dims[0] * dims[1]) {
-    // One more row of background, and a word, lie behind every plane, so that looking at the next row needs no
-    // question.
-    const std::size_t size = plane_ + row_ + kWord;
-    for (Plane* plane : {&low_, &high_}) {
-        plane->ranks.assign(size, 0);
-        plane->marks.assign(size, 0);
-    }
-    upright_marks_.assign(size, 0);
-    numbers_ = large_array<Numbers>(3 * size);
-    std::fill(numbers_.begin(), numbers_.end(), Numbers{});
-    low_.numbers = numbers_.data();
-    high_.numbers = low_.numbers + size;
-    upright_numbers_ = high_.numbers + size;
-}
+Slab<Rank>::Slab(const Dims& dims)
+    : dims_(dims),
+      row_(dims[0]),
+      plane_(dims[0] * dims[1]),
+      low_{std::vector<Rank>(plane_ + row_ + Marks::kWord, 0), Marks(plane_ + row_)},
+      high_(low_),
+      upright_(plane_ + row_) {}
 
-// Slabs that follow one another are of much the same size.
+// A closed surface has about two triangles for each vertex.
 template <class Rank>
-void Slab<Rank>::make_room() {
+void Slab<Rank>::make_room(std::size_t vertices) {
     const auto reserve = [](auto& array, std::size_t size) {
         array.reserve(size);
         ask_for_large_pages(array);
     };
     mesh_ = {};
-    reserve(mesh_.vertices, 3 * expected_.vertices);
-    reserve(mesh_.elements, expected_.vertices);
-    reserve(mesh_.triangles, 3 * expected_.triangles);
-    reserve(mesh_.sides, 2 * expected_.triangles);
-    reserve(mesh_.curves, expected_.curves);
-}
-
-template <class Rank>
-SlabMesh Slab<Rank>::finished() {
-    const auto little_more = [](std::size_t size) { return size + size / 8; };
-    expected_ = {little_more(mesh_.elements.size()), little_more(mesh_.sides.size() / 2),
-                 little_more(mesh_.curves.size())};
-    return std::move(mesh_);
+    reserve(mesh_.vertices, 3 * vertices);
+    reserve(mesh_.elements, vertices);
+    reserve(mesh_.triangles, 3 * 2 * vertices);
+    reserve(mesh_.sides, 2 * 2 * vertices);
 }
 
 template <class Rank>
 void Slab<Rank>::survey_plane(Plane& plane) const {
     const Rank *here = plane.ranks.data(), *next = here + row_;
-    std::uint8_t* marks = plane.marks.data();
+    std::uint8_t* const marks = plane.marks.data();
     const std::size_t count = plane_;  // which the compiler cannot know to stay while bytes are written
     for (std::size_t n = 0; n < count; ++n) {
         const std::uint8_t x = here[n] != here[n + 1], y = here[n] != next[n];
@@ -117,7 +85,7 @@ void Slab<Rank>::survey_plane(Plane& plane) const {
 template <class Rank>
 void Slab<Rank>::survey_layer() {
     const Rank *low = low_.ranks.data(), *high = high_.ranks.data();
-    std::uint8_t* marks = upright_marks_.data();
+    std::uint8_t* const marks = upright_.data();
     const std::size_t count = plane_, row = row_;
     for (std::size_t n = 0; n < count; ++n) marks[n] = low[n] != high[n];
     mark_faces(low, low + 1, high, high + 1, count, 1, marks);
@@ -125,59 +93,26 @@ void Slab<Rank>::survey_layer() {
 }
 
 template <class Rank>
-std::int32_t Slab<Rank>::add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element) {
-    const std::size_t number = mesh_.elements.size();
+void Slab<Rank>::set_vertex(std::size_t number, std::size_t i, std::size_t j, std::size_t k, Element element) {
     const std::array<std::size_t, 3> at{i, j, k};
-    std::array<float, 3> place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float middle = element >> axis & 1 ? 0.5f : 0.0f;
-        place[axis] = static_cast<float>(at[axis]) - 1.0f + middle;  // less the layer of background
+        mesh_.vertices[3 * number + axis] =
+            static_cast<float>(at[axis]) - 1.0f + middle;  // less the background's layer
     }
-    mesh_.vertices.insert(mesh_.vertices.end(), place.begin(), place.end());
-    mesh_.elements.push_back(element);
-    return static_cast<std::int32_t>(number);
+    mesh_.elements[number] = element;
 }
 
 template <class Rank>
-template <class Visit>
-void Slab<Rank>::for_each_marked(const std::vector<std::uint8_t>& marks, const Visit& visit) const {
-    for (std::size_t j = 0; j < dims_[1]; ++j) {
-        const std::size_t begin = j * row_, end = begin + row_;
-        for (std::size_t at = begin; at < end;) {
-            const std::uint64_t word = word_at(marks, at);
-            if (word == 0) {
-                at += kWord;
-                continue;
-            }
-            at += lowest_byte(word);
-            if (at < end) visit(at, at - begin, j);
-            ++at;
-        }
-    }
-}
-
-template <class Rank>
-void Slab<Rank>::number_plane(Plane& plane, std::size_t k, bool of_slab_before) {
-    constexpr std::array<Element, 3> kElements{1, 2, 3};
-    std::int32_t before = 0;
-    if (of_slab_before) {
-        for_each_marked(plane.marks,
-                        [&](std::size_t at, std::size_t, std::size_t) { before -= std::popcount(plane.marks[at]); });
-    }
-    for_each_marked(plane.marks, [&](std::size_t at, std::size_t i, std::size_t j) {
+void Slab<Rank>::add_vertices(Marks& marks, std::size_t k, const std::array<Element, 3>& elements) {
+    std::size_t next = mesh_.elements.size(), j = 0, row_end = row_;
+    const std::size_t count = next + marks.vertices();
+    mesh_.vertices.resize(3 * count);
+    mesh_.elements.resize(count);
+    marks.number(static_cast<std::int32_t>(next), [&](std::size_t at, unsigned mark) {
+        for (; at >= row_end; row_end += row_) ++j;
         for (std::size_t n = 0; n < 3; ++n) {
-            if (plane.marks[at] >> n & 1)
-                plane.numbers[at][n] = of_slab_before ? before++ : add_vertex(i, j, k, kElements[n]);
-        }
-    });
-}
-
-template <class Rank>
-void Slab<Rank>::number_layer(std::size_t k) {
-    constexpr std::array<Element, 3> kElements{4, 5, 6};
-    for_each_marked(upright_marks_, [&](std::size_t at, std::size_t i, std::size_t j) {
-        for (std::size_t n = 0; n < 3; ++n) {
-            if (upright_marks_[at] >> n & 1) upright_numbers_[at][n] = add_vertex(i, j, k, kElements[n]);
+            if (mark >> n & 1) set_vertex(next++, at + row_ - row_end, j, k, elements[n]);
         }
     });
 }
@@ -189,18 +124,15 @@ void Slab<Rank>::draw_layer(std::size_t k) {
     constexpr std::uint64_t kAlongX = 0x0101010101010101u, kAlongBoth = 0x0303030303030303u;
     for (std::size_t j = 0; j + 1 < dims_[1]; ++j) {
         const std::size_t begin = j * row_, end = begin + row_ - 1;
-        for (std::size_t at = begin; at < end; at += kWord) {
-            const std::uint64_t here = word_at(low_.marks, at) | word_at(high_.marks, at);
-            const std::uint64_t next = word_at(low_.marks, at + row_) | word_at(high_.marks, at + row_);
-            std::uint64_t word = (here & kAlongBoth) | ((next | word_at(upright_marks_, at)) & kAlongX);
-            while (word != 0) {
-                const std::size_t byte = lowest_byte(word);
-                if (at + byte >= end) break;
-                draw_cell(at + byte, at + byte - begin, j, k);
-                std::uint8_t bytes[kWord];
-                std::memcpy(bytes, &word, kWord);
-                bytes[byte] = 0;
-                std::memcpy(&word, bytes, kWord);
+        for (std::size_t at = begin; at < end; at += Marks::kWord) {
+            const std::uint64_t here = low_.marks.word(at) | high_.marks.word(at);
+            const std::uint64_t next = low_.marks.word(at + row_) | high_.marks.word(at + row_);
+            std::uint64_t left = (here & kAlongBoth) | ((next | upright_.word(at)) & kAlongX);
+            left |= left >> 1;
+            left &= kAlongX & lowest_bits(8 * std::min(end - at, Marks::kWord));
+            for (; left != 0; left &= left - 1) {
+                const std::size_t cell = at + static_cast<std::size_t>(std::countr_zero(left)) / 8;
+                draw_cell(cell, cell - begin, j, k);
             }
         }
     }
@@ -221,27 +153,30 @@ void Slab<Rank>::draw_cell(std::size_t at, std::size_t i, std::size_t j, std::si
     bool two = true;
     for (unsigned n = 1; n < 8; ++n) two &= ranks[n] == ranks[0] || ranks[n] == other;
     const CellDisks& disks = two ? cache_.of_two(other > ranks[0] ? others : others ^ 255u) : cache_.of(ranks);
-    const auto stays = static_cast<Element>(disks.several_cones ? kCell | kStays : kCell);
-    const std::int32_t middle = disks.middle ? add_vertex(i, j, k, stays) : 0;
-    write_cell(disks, ranks, at, middle);
+    const std::size_t middle = mesh_.elements.size();
+    if (disks.middle) {
+        mesh_.vertices.resize(3 * (middle + 1));
+        mesh_.elements.resize(middle + 1);
+        set_vertex(middle, i, j, k, disks.several_cones ? kCell | kStays : kCell);
+    }
+    write_cell(disks, ranks, at, static_cast<std::int32_t>(middle));
 }
 
 template <class Rank>
 void Slab<Rank>::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle) {
-    std::array<std::int32_t, 19> number;
-    const std::array<const Plane*, 2> plane{&low_, &high_};
-    for (std::size_t n = 0; n < 4; ++n) {
-        const std::size_t low = n & 1, high = n >> 1;
-        number[n] = plane[high]->numbers[at + low * row_][0];
-        number[4 + n] = plane[high]->numbers[at + low][1];
-        number[8 + n] = upright_numbers_[at + low + high * row_][0];
-    }
-    for (std::size_t side = 0; side < 2 && disks.faces != 0; ++side) {
-        number[12 + side] = upright_numbers_[at + side][2];
-        number[14 + side] = upright_numbers_[at + side * row_][1];
-        number[16 + side] = plane[side]->numbers[at][2];
-    }
-    number[kMiddle] = middle;
+    const Marks::Numbers low = low_.marks.numbers(at), low_row = low_.marks.numbers(at + row_);
+    const Marks::Numbers high = high_.marks.numbers(at), high_row = high_.marks.numbers(at + row_);
+    const Marks::Numbers upright = upright_.numbers(at), upright_row = upright_.numbers(at + row_);
+    const std::array number{// along x, y and z; in faces of axis 0, 1 and 2; of the cell
+                            low.here[0],         low_row.here[0], high.here[0],
+                            high_row.here[0],  //
+                            low.here[1],         low.next[1],     high.here[1],
+                            high.next[1],  //
+                            upright.here[0],     upright.next[0], upright_row.here[0],
+                            upright_row.next[0],  //
+                            upright.here[2],     upright.next[2], upright.here[1],
+                            upright_row.here[1],  //
+                            low.here[2],         high.here[2],    middle};
     const std::size_t before = mesh_.sides.size() / 2, count = disks.triangles.size();
     mesh_.triangles.resize(3 * (before + count));
     mesh_.sides.resize(2 * (before + count));

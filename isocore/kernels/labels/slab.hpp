@@ -11,11 +11,13 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/array.hpp"
 #include "labels/cell_disks.hpp"
 #include "labels/label_mesh.hpp"
+#include "labels/marks.hpp"
 
 namespace isocore::labels {
 
@@ -30,10 +32,6 @@ class DiskCache {
   private:
     std::vector<CellDisks> of_two_;
     std::unordered_map<std::uint32_t, CellDisks> of_more_;
-};
-
-struct Sizes {
-    std::size_t vertices = 0, triangles = 0, curves = 0;
 };
 
 // What one slab has drawn, with vertices numbered from 0.
@@ -51,58 +49,54 @@ class Slab {
     Slab& operator=(const Slab&) = delete;
 
     // Draws the layers of cells `first` to `last` - 1. load(plane, out) writes a plane's ranks, dims[0] * dims[1] of
-    // them.
+    // them. vertices: how many there will be, about.
     template <class Load>
-    SlabMesh draw(std::size_t first, std::size_t last, const Load& load) {
-        make_room();
+    SlabMesh draw(std::size_t first, std::size_t last, std::size_t vertices, const Load& load) {
+        make_room(vertices);
         load(first, low_.ranks.data());
         survey_plane(low_);
-        number_plane(low_, first, first != 0);
+        if (first == 0)
+            add_vertices(low_.marks, first, kOfPlane);
+        else  // of the slab before
+            low_.marks.number(-static_cast<std::int32_t>(low_.marks.vertices()), [](std::size_t, unsigned) {});
         for (std::size_t layer = first; layer < last; ++layer) {
             load(layer + 1, high_.ranks.data());
             survey_plane(high_);
             survey_layer();
-            number_layer(layer);
-            number_plane(high_, layer + 1, false);
+            add_vertices(upright_, layer, kUpright);
+            add_vertices(high_.marks, layer + 1, kOfPlane);
             draw_layer(layer);
             std::swap(low_, high_);
         }
-        return finished();
+        return std::move(mesh_);
     }
 
   private:
-    using Numbers = std::array<std::int32_t, 3>;
+    static constexpr std::array<Element, 3> kOfPlane{1, 2, 3}, kUpright{4, 5, 6};
+
     // Of each sample: is the edge to the next along x (bit 0) and along y (bit 1) crossed, and does the face between
-    // them have a vertex (bit 2)? And the numbers of their vertices.
+    // them have a vertex (bit 2)?
     struct Plane {
         std::vector<Rank> ranks;
-        std::vector<std::uint8_t> marks;
-        Numbers* numbers;  // along x, along y, in the face
+        Marks marks;
     };
 
-    void make_room();
-    SlabMesh finished();
+    void make_room(std::size_t vertices);
     void survey_plane(Plane& plane) const;
     void survey_layer();
-    void number_plane(Plane& plane, std::size_t k, bool of_slab_before);
-    void number_layer(std::size_t k);
     void draw_layer(std::size_t k);
     void draw_cell(std::size_t at, std::size_t i, std::size_t j, std::size_t k);
     void write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle);
-    std::int32_t add_vertex(std::size_t i, std::size_t j, std::size_t k, Element element);
-    // Calls visit(place, i, j) for every sample of a plane that has a mark.
-    template <class Visit>
-    void for_each_marked(const std::vector<std::uint8_t>& marks, const Visit& visit) const;
+    // Adds and numbers all vertices of marked samples, one of these elements for each bit.
+    void add_vertices(Marks& marks, std::size_t k, const std::array<Element, 3>& elements);
+    void set_vertex(std::size_t number, std::size_t i, std::size_t j, std::size_t k, Element element);
 
     Dims dims_;
     std::size_t row_, plane_;  // samples of a row, of a plane
     Plane low_, high_;
-    std::vector<std::uint8_t> upright_marks_;  // as a plane's, of edges along z, faces of axis 1 (bit 1) and 0 (bit 2)
-    Numbers* upright_numbers_;
-    Array<Numbers> numbers_;  // of both planes and what stands between them, in one piece
+    Marks upright_;  // as a plane's, of edges along z, faces of axis 1 (bit 1) and 0 (bit 2)
     DiskCache cache_;
     SlabMesh mesh_;
-    Sizes expected_;  // a little more than of the slab before
 };
 
 }  // namespace isocore::labels
