@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "common/large_pages.hpp"
@@ -15,10 +16,10 @@ namespace isocore::labels {
 namespace {
 
 // How many layers of cells a slab has. The plane below each is surveyed a second time, so that slabs are thick; but
-// every thread has two of them.
+// every thread has two of them. One thread takes a few layers as one slab, which then need not be moved.
 std::size_t layers_of_slab(std::size_t layers, int threads) {
     constexpr std::size_t kLeast = 4, kMost = 16;
-    if (threads <= 1) return kMost;
+    if (threads <= 1) return layers <= 2 * kMost ? layers : kMost;
     const std::size_t slabs = 2 * static_cast<std::size_t>(threads);
     return std::clamp((layers + slabs - 1) / slabs, kLeast, kMost);
 }
@@ -113,6 +114,7 @@ LabelMesh extract(GridView<Sample> samples, const RankTable& ranks, int threads)
     if (starts[count].vertices > kMost || starts[count].triangles > kMost) {
         throw std::length_error("the labels' surfaces have more than 2^31 vertices or triangles");
     }
+    if (count == 1) return std::move(slabs[0]);
     std::vector<std::size_t> middles(count + 1);
     for (std::size_t n = 0; n < count; ++n) middles[n + 1] = slabs[n].last_middles;
     LabelMesh mesh{large_array<float>(3 * starts[count].vertices), large_array<Element>(starts[count].vertices),
