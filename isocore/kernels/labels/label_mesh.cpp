@@ -43,7 +43,7 @@ void load_plane(const GridView<Sample>& samples, const RankTable& ranks, std::si
 
 // How many vertices the layers `first` to `last` - 1 will have, at most in most maps: one for each two neighbours that
 // differ, of which those of every fourth row are counted, and some in the middles of faces and cells. An array that is
-// too small is copied as it grows, to pages that are new each time; what of it is too large costs nothing.
+// too small is copied as it grows, to pages that are new each time; what of it is too large is never touched.
 template <class Sample>
 std::size_t expect_vertices(const GridView<Sample>& samples, std::size_t first, std::size_t last) {
     constexpr std::size_t kStride = 4;

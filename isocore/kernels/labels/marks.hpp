@@ -27,8 +27,8 @@ class Marks {
 
     std::size_t vertices() const {
         std::size_t sum = 0;
-        for (std::size_t at = 0; at < marks_.size() / kWord * kWord; at += kWord)
-            sum += static_cast<std::size_t>(std::popcount(word(at)));
+        for (std::size_t n = 0; n < numbers_.size(); ++n)
+            sum += static_cast<std::size_t>(std::popcount(word(n * kWord)));
         return sum;
     }
 
@@ -43,7 +43,7 @@ class Marks {
             while (left != 0) {
                 const int byte = std::countr_zero(left) / 8;
                 visit(n * kWord + static_cast<std::size_t>(byte), static_cast<unsigned>(left >> 8 * byte & 7));
-                left &= ~(std::uint64_t{0xFF} << 8 * byte);
+                left &= ~(std::uint64_t{7} << 8 * byte);
             }
         }
     }

@@ -164,19 +164,23 @@ void Slab<Rank>::draw_cell(std::size_t at, std::size_t i, std::size_t j, std::si
 
 template <class Rank>
 void Slab<Rank>::write_cell(const CellDisks& disks, const CornerRanks& ranks, std::size_t at, std::int32_t middle) {
-    const Marks::Numbers low = low_.marks.numbers(at), low_row = low_.marks.numbers(at + row_);
-    const Marks::Numbers high = high_.marks.numbers(at), high_row = high_.marks.numbers(at + row_);
-    const Marks::Numbers upright = upright_.numbers(at), upright_row = upright_.numbers(at + row_);
-    const std::array number{// along x, y and z; in faces of axis 0, 1 and 2; of the cell
-                            low.here[0],         low_row.here[0], high.here[0],
-                            high_row.here[0],  //
-                            low.here[1],         low.next[1],     high.here[1],
-                            high.next[1],  //
-                            upright.here[0],     upright.next[0], upright_row.here[0],
-                            upright_row.next[0],  //
-                            upright.here[2],     upright.next[2], upright.here[1],
-                            upright_row.here[1],  //
-                            low.here[2],         high.here[2],    middle};
+    const std::array plane{low_.marks.numbers(at), high_.marks.numbers(at)};
+    const std::array plane_row{low_.marks.numbers(at + row_), high_.marks.numbers(at + row_)};
+    const std::array upright{upright_.numbers(at), upright_.numbers(at + row_)};
+    std::array<std::int32_t, 19> number;
+    for (std::size_t n = 0; n < 2; ++n) {
+        number[2 * n] = plane[n].here[0];
+        number[2 * n + 1] = plane_row[n].here[0];
+        number[4 + 2 * n] = plane[n].here[1];
+        number[5 + 2 * n] = plane[n].next[1];
+        number[8 + 2 * n] = upright[n].here[0];
+        number[9 + 2 * n] = upright[n].next[0];
+        number[14 + n] = upright[n].here[1];
+        number[16 + n] = plane[n].here[2];
+    }
+    number[kFirstFace] = upright[0].here[2];
+    number[kFirstFace + 1] = upright[0].next[2];
+    number[kMiddle] = middle;
     const std::size_t before = mesh_.sides.size() / 2, count = disks.triangles.size();
     mesh_.triangles.resize(3 * (before + count));
     mesh_.sides.resize(2 * (before + count));
