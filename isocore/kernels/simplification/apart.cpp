@@ -10,6 +10,7 @@
 #include "common/large_pages.hpp"
 #include "common/parallel.hpp"
 #include "simplification/contraction.hpp"
+#include "simplification/first_witnesses.hpp"
 #include "simplification/morton.hpp"
 #include "simplification/part.hpp"
 #include "simplification/remains.hpp"
@@ -22,18 +23,24 @@ namespace {
 template <class Real>
 class Worker {
   public:
-    Worker(const Reference<Real>& reference, float limit, const Options& options)
-        : reference_(reference),
-          finder_(reference),
+    Worker(const IndexedMesh<Real>& whole, const FirstWitnesses* witnesses, const Reference<Real>& reference,
+           float limit, const Options& options)
+        : whole_(whole),
+          witnesses_(witnesses),
+          reference_(reference),
+          finder_(whole),
           mesh_(options.stretch, options.rounding),
-          grid_({}, options.rounding),
+          grid_(options.rounding),
           contraction_(mesh_, reference, grid_, limit) {
         contraction_.backward().prove_all(std::isfinite(options.max_error));
     }
 
     Remains contract(const Cell& low, const Cell& high) {
         finder_.find(low, high, part_);
-        mesh_.take(reference_.mesh(), part_);
+        mesh_.take(whole_.mesh, part_);
+        // A triangle that lies in several boxes has its witnesses in that in which it is numbered: in none it changes.
+        if (witnesses_ != nullptr)
+            mesh_.take_witnesses(whole_.mesh, reference_.mesh(), *witnesses_, part_.first_numbered);
         if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
         find_movable();
         if (!movable_.empty()) {
@@ -64,28 +71,19 @@ class Worker {
     }
 
     void enter_triangles(const Cell& low, const Cell& high) {
-        Cells cells = reference_.cells();
-        for (std::size_t a = 0; a < 3; ++a) {
-            cells.origin[a] += low[a] / cells.per_cell;
-            cells.dims[a] = static_cast<std::size_t>(high[a] - low[a] + 1);
-        }
-        grid_.cover(cells);
-        TriangleGrid::Spare spare;
-        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-            const auto triangle = static_cast<std::int32_t>(t);
-            cubes_.clear();
-            grid_.cubes_of(mesh_, triangle, cubes_);
-            grid_.enter(triangle, cubes_, spare);
-        }
+        grid_.cover(whole_.cells, low, high);
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) grid_.enter(mesh_, static_cast<std::int32_t>(t));
     }
 
+    IndexedMesh<Real> whole_;
+    const FirstWitnesses* witnesses_;  // none where the mesh is its own reference
     const Reference<Real>& reference_;
     PartFinder<Real> finder_;
     Part part_;
     Mesh<Real> mesh_;
     TriangleGrid grid_;
     Contraction<Real> contraction_;
-    std::vector<std::int32_t> movable_, cubes_;
+    std::vector<std::int32_t> movable_;
     std::vector<float> costs_;
 };
 
@@ -97,8 +95,8 @@ struct BoxOfCells {
 
 // Those that hold triangles, in the order of Morton.
 template <class Real>
-std::vector<BoxOfCells> find_boxes(const Reference<Real>& reference) {
-    const Cells& cells = reference.cells();
+std::vector<BoxOfCells> find_boxes(const IndexedMesh<Real>& whole) {
+    const Cells& cells = whole.cells;
     std::array<std::int32_t, 3> last;
     for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<std::int32_t>(cells.dims[a] - 1);
     std::vector<BoxOfCells> out;
@@ -107,13 +105,9 @@ std::vector<BoxOfCells> find_boxes(const Reference<Real>& reference) {
         for (low[1] = 0; low[1] <= last[1]; low[1] += kBoxCells) {
             for (low[0] = 0; low[0] <= last[0]; low[0] += kBoxCells) {
                 BoxOfCells box{low, low, morton(low, 0), 0};
-                Cell before = low;  // where triangles lie that end at a vertex of the box
-                for (std::size_t a = 0; a < 3; ++a) {
-                    before[a] = std::max(low[a] - 1, 0);
-                    box.high[a] = std::min(low[a] + kBoxCells - 1, last[a]);
-                }
-                reference.each_run_between(before, box.high,
-                                           [&](std::uint32_t first, std::uint32_t end) { box.weight += end - first; });
+                for (std::size_t a = 0; a < 3; ++a) box.high[a] = std::min(low[a] + kBoxCells - 1, last[a]);
+                whole.each_run_between(low, box.high,
+                                       [&](std::uint32_t first, std::uint32_t end) { box.weight += end - first; });
                 if (box.weight > 0) out.push_back(box);
             }
         }
@@ -121,6 +115,40 @@ std::vector<BoxOfCells> find_boxes(const Reference<Real>& reference) {
     std::sort(out.begin(), out.end(),
               [](const BoxOfCells& one, const BoxOfCells& other) { return one.key < other.key; });
     return out;
+}
+
+template <class Real>
+Tally contract_boxes(const IndexedMesh<Real>& whole, const FirstWitnesses* witnesses, const Reference<Real>& reference,
+                     float limit, const Options& options, std::vector<Remains>& parts) {
+    const std::vector<BoxOfCells> boxes = find_boxes(whole);
+    std::vector<std::size_t> order(boxes.size());  // the longest first, so that no thread is left with one at the end
+    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t one, std::size_t other) { return boxes[one].weight > boxes[other].weight; });
+    parts.resize(boxes.size());
+    const auto count = std::min(boxes.size(), static_cast<std::size_t>(std::max(options.threads, 1)));
+    std::vector<Tally> found(count);
+    std::atomic<std::size_t> next{0};
+    parallel_for(options.threads, count, [&](std::size_t number) {
+        // As remains become more, boxes become smaller, and so does what a worker has for them.
+        constexpr std::size_t kAtOnce = 16, kFewer = 2;
+        std::unique_ptr<Worker<Real>> worker;
+        std::size_t largest = 0;
+        for (std::size_t n = next++; n < boxes.size(); n = next++) {
+            const BoxOfCells& box = boxes[order[n]];
+            if (worker == nullptr || kFewer * box.weight < largest) {
+                if (worker != nullptr) found[number].add(worker->tally());
+                worker = std::make_unique<Worker<Real>>(whole, witnesses, reference, limit, options);
+                largest = box.weight;
+            }
+            parts[order[n]] = worker->contract(box.low, box.high);
+            if (n % kAtOnce == 0) return_freed_memory();
+        }
+        if (worker != nullptr) found[number].add(worker->tally());
+    });
+    Tally sum;
+    for (const Tally& one : found) sum.add(one);
+    return sum;
 }
 
 }  // namespace
@@ -134,42 +162,30 @@ void Tally::add(const Tally& other) {
 }
 
 template <class Real>
-Tally contract_apart(const Reference<Real>& reference, float limit, const Options& options, Mesh<Real>& mesh) {
-    const std::vector<BoxOfCells> boxes = find_boxes(reference);
-    std::vector<std::size_t> order(boxes.size());  // the longest first, so that no thread is left with one at the end
-    for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t one, std::size_t other) { return boxes[one].weight > boxes[other].weight; });
-    std::vector<Remains> parts(boxes.size());
-    const auto count = std::min(boxes.size(), static_cast<std::size_t>(std::max(options.threads, 1)));
-    std::vector<Tally> found(count);
-    std::atomic<std::size_t> next{0};
-    parallel_for(options.threads, count, [&](std::size_t number) {
-        // As remains become more, boxes become smaller, and so does what a worker has for them.
-        constexpr std::size_t kAtOnce = 16, kFewer = 2;
-        std::unique_ptr<Worker<Real>> worker;
-        std::size_t largest = 0;
-        for (std::size_t n = next++; n < boxes.size(); n = next++) {
-            const BoxOfCells& box = boxes[order[n]];
-            if (worker == nullptr || kFewer * box.weight < largest) {
-                if (worker != nullptr) found[number].add(worker->tally());
-                worker = std::make_unique<Worker<Real>>(reference, limit, options);
-                largest = box.weight;
-            }
-            parts[order[n]] = worker->contract(box.low, box.high);
-            if (n % kAtOnce == 0) return_freed_memory();
-        }
-        if (worker != nullptr) found[number].add(worker->tally());
-    });
+Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, float limit,
+                     const Options& options, Mesh<Real>& mesh) {
+    std::vector<Remains> parts;
+    Tally tally;
+    if (input.is_same(reference.mesh())) {
+        const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0};
+        tally = contract_boxes<Real>(whole, nullptr, reference, limit, options, parts);
+    } else {
+        const Cubes cubes(reference.cells(), options.rounding);
+        const CellIndex index = index_by_cubes(input, cubes);
+        const FirstWitnesses witnesses =
+            find_witnesses(input, cubes, index, reference.mesh(), mesh.stretch(), limit, options.threads);
+        return_freed_memory();
+        const IndexedMesh<Real> whole{input, reference.cells(), index, Cubes::kBits};
+        tally = contract_boxes(whole, &witnesses, reference, limit, options, parts);
+    }
     return_freed_memory();
-    mesh.take(reference.mesh(), parts);
+    mesh.take(input, reference.mesh(), parts);
     return_freed_memory();
-    Tally sum;
-    for (const Tally& one : found) sum.add(one);
-    return sum;
+    return tally;
 }
 
-template Tally contract_apart(const Reference<float>&, float, const Options&, Mesh<float>&);
-template Tally contract_apart(const Reference<double>&, float, const Options&, Mesh<double>&);
+template Tally contract_apart(const MeshArrays<float>&, const Reference<float>&, float, const Options&, Mesh<float>&);
+template Tally contract_apart(const MeshArrays<double>&, const Reference<double>&, float, const Options&,
+                              Mesh<double>&);
 
 }  // namespace isocore::simplification

@@ -1,5 +1,5 @@
-// apart.hpp - The first phase, for a mesh that is its own reference: box by box, each with a mesh of its own, of which
-// only what is left is kept. So the whole mesh is never there with all that contraction wants to know of it.
+// apart.hpp - The first phase, box by box, each with a mesh of its own, of which only what is left is kept. So the
+// whole mesh is never there with all that contraction wants to know of it.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ struct Tally {
 // Contracts what can be in the boxes that are not shifted; what is left becomes the mesh, which is empty. limit: the
 // bound, in stretched coordinates.
 template <class Real>
-Tally contract_apart(const Reference<Real>& reference, float limit, const Options& options, Mesh<Real>& mesh);
+Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, float limit,
+                     const Options& options, Mesh<Real>& mesh);
 
 }  // namespace isocore::simplification

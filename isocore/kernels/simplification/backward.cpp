@@ -45,7 +45,7 @@ std::array<std::array<Spot, 3>, 4> quarters(const std::array<Spot, 3>& c) {
 template <class Real>
 void Backward<Real>::enter_box(const Cell& low, const Cell& high, float limit) {
     leave_box();
-    if (!reference_.is_in_order() || reference_.mesh().sheets != nullptr || limit > kFarthest) return;
+    if (!reference_.index().is_in_order() || reference_.mesh().sheets != nullptr || limit > kFarthest) return;
     const Cells& cells = reference_.cells();
     Cell from, to;
     for (std::size_t a = 0; a < 3; ++a) {

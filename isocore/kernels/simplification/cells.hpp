@@ -16,6 +16,12 @@ using Cell = std::array<std::int32_t, 3>;
 
 inline constexpr std::int32_t kBoxCells = 32;  // along each axis of a box, the unit of parallel work
 
+// Of a cell among so many along each axis: row by row, layer by layer.
+inline std::size_t number_of(const Cell& cell, const std::array<std::size_t, 3>& dims) {
+    return static_cast<std::size_t>(cell[0]) +
+           dims[0] * (static_cast<std::size_t>(cell[1]) + dims[1] * static_cast<std::size_t>(cell[2]));
+}
+
 struct Cells {
     std::array<double, 3> origin{0, 0, 0};  // the low corner of cell 0, 0, 0
     double per_cell = 1;                    // from coordinates to cells
@@ -64,7 +70,7 @@ struct Cells {
         const double most = static_cast<double>(dims[axis] - 1);
         return static_cast<std::int32_t>(std::clamp(in_cells, 0.0, most));
     }
-    std::size_t count() const { return dims[0] * dims[1] * dims[2]; }
+    std::size_t number(const Cell& cell) const { return number_of(cell, dims); }
 };
 
 }  // namespace isocore::simplification

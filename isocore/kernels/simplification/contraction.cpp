@@ -220,7 +220,7 @@ void Contraction<Real>::take_out(Part& part) {
         if (triangle == kNone) continue;
         cubes_.clear();
         grid_.cubes_of(mesh_, triangle, cubes_);
-        grid_.remove(triangle, cubes_, spare_);
+        grid_.remove(triangle, cubes_);
     }
     part.witnesses.hand_over(mesh_, star);
 }
@@ -238,8 +238,7 @@ void Contraction<Real>::draw_faces(const Part& part) {
         mesh_.proved[static_cast<std::size_t>(number)] = part.distances[n];
         if (count_ > 1) grid_.cubes_of(mesh_, number, cubes_);
         const std::span<const std::int32_t> cubes(cubes_);
-        grid_.move(number, cubes.first(before), count_ > 1 ? cubes.subspan(before) : crossings_.cubes_of_face(n),
-                   spare_);
+        grid_.move(number, cubes.first(before), count_ > 1 ? cubes.subspan(before) : crossings_.cubes_of_face(n));
     }
 }
 

@@ -36,9 +36,10 @@ class Contraction {
     void start_over() {
         room_ = {};
         quadric_room_ = {};
-        spare_ = {};
         crossings_.start_over();
     }
+    // The grid alone was.
+    void look_through_new_grid() { crossings_.start_over(); }
     // From now on.
     void set_limit(float limit) { limit_ = limit; }
     float limit() const { return limit_; }
@@ -90,7 +91,6 @@ class Contraction {
     Crossings<Real> crossings_;
     RingRoom room_;
     QuadricRoom quadric_room_;
-    TriangleGrid::Spare spare_;
     std::vector<std::int32_t> cubes_;
     std::vector<std::array<std::size_t, kRules>> refused_;
 };

@@ -81,7 +81,7 @@ void Crossings<Real>::find_cubes(const Star& star) {
     starts_[0] = 0;
     const auto place = [&](std::size_t n) { return &mesh_.places[static_cast<std::size_t>(star.neighbours[n])].at; };
     for (std::size_t n = 1; n + 1 < star.count; ++n) {
-        grid_.cubes_of<Real>({place(0), place(n), place(n + 1)}, cubes_);
+        grid_.cubes().touched<Real>({place(0), place(n), place(n + 1)}, cubes_);
         starts_[n] = cubes_.size();
     }
 }

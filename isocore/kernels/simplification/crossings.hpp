@@ -2,6 +2,7 @@
 // which pairs are clearly apart.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,8 @@ namespace isocore::simplification {
 // A set of numbers, a bit for each that there may be.
 class NumberSet {
   public:
-    explicit NumberSet(std::size_t size) : words_(size / 64 + 1) {}
+    // For numbers below `size`. What is in it stays.
+    void make_room(std::size_t size) { words_.resize(std::max(words_.size(), size / 64 + 1)); }
 
     // False if it is there already.
     bool add(std::int32_t number) {
@@ -39,16 +41,12 @@ template <class Real>
 class Crossings {
   public:
     Crossings(const Mesh<Real>& mesh, const TriangleGrid& grid)
-        : mesh_(mesh),
-          grid_(grid),
-          rounding_(mesh.rounding()),
-          seen_cubes_(grid.cube_count()),
-          seen_triangles_(mesh.triangles.size()) {}
+        : mesh_(mesh), grid_(grid), rounding_(mesh.rounding()) {}
 
-    // The mesh and the grid were filled anew.
+    // The grid was filled anew, and perhaps the mesh.
     void start_over() {
-        seen_cubes_ = NumberSet(grid_.cube_count());
-        seen_triangles_ = NumberSet(mesh_.triangles.size());
+        seen_cubes_.make_room(grid_.cubes().count());
+        seen_triangles_.make_room(mesh_.triangles.size());
     }
 
     // Do the faces meet anything that they should not? facets: star.draw()'s. others: stars of the same vertex, in

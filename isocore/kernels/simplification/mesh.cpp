@@ -87,7 +87,7 @@ void Mesh<Real>::number_triangles(const MeshArrays<Real>& input, const Array<std
     triangles.resize(count);
     from_triangles.resize(count);
     proved.resize(count);
-    std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
+    std::fill(proved.begin(), proved.end(), 0.0f);  // as those of the reference
     if (input.sheets != nullptr) sheets_.resize(count);
     const auto corner = [&](std::size_t n) { return numbers[static_cast<std::size_t>(input.triangles[n])]; };
     const auto lowest = [&](std::size_t t) {

@@ -18,8 +18,6 @@
 
 namespace isocore::simplification {
 
-inline constexpr std::int32_t kNone = -1;
-
 template <class Real>
 struct Place {
     std::array<Real, 3> at;
@@ -80,8 +78,17 @@ class QuadricRoom {
     std::vector<Quadric*> free_;
 };
 
-struct Part;     // part.hpp
-struct Remains;  // remains.hpp
+// A place relative to another, stretched.
+template <class Real>
+Spot relative(const std::array<Real, 3>& place, const std::array<Real, 3>& origin, const Spot& stretch) {
+    return {static_cast<float>(place[0] - origin[0]) * stretch[0],
+            static_cast<float>(place[1] - origin[1]) * stretch[1],
+            static_cast<float>(place[2] - origin[2]) * stretch[2]};
+}
+
+class FirstWitnesses;  // first_witnesses.hpp
+struct Part;           // part.hpp
+struct Remains;        // remains.hpp
 template <class Real>
 class Joining;
 
@@ -96,16 +103,18 @@ class Mesh {
     // parts, which are then empty.
     void take_all(const MeshArrays<Real>& input, const Cells& cells, int threads);
     void take(const MeshArrays<Real>& input, const Part& part);
-    void take(const MeshArrays<Real>& input, std::vector<Remains>& parts);
+    void take(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, std::vector<Remains>& parts);
+    // Then, where the mesh is not its own reference: the vertices of that which triangles from number `first` on answer
+    // for, behind the vertices.
+    void take_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference,
+                        const FirstWitnesses& witnesses, std::size_t first);
     // What is left of the part that was taken.
     Remains remains(const Part& part) const;
 
     std::size_t vertex_count() const { return vertices.size(); }
     // A place relative to another, stretched.
     Spot relative(const std::array<Real, 3>& place, const std::array<Real, 3>& origin) const {
-        return {static_cast<float>(place[0] - origin[0]) * stretch_[0],
-                static_cast<float>(place[1] - origin[1]) * stretch_[1],
-                static_cast<float>(place[2] - origin[2]) * stretch_[2]};
+        return isocore::simplification::relative(place, origin, stretch_);
     }
     const Spot& stretch() const { return stretch_; }
     // How far writing moves a vertex along each axis at most, stretched.
@@ -120,7 +129,8 @@ class Mesh {
     Array<Triangle> triangles;
     Array<float> proved;   // by triangle: how far its points lie from the reference, at most
     Array<Point> written;  // where the vertices are written; none where they stay as they are
-    // Numbers in the input: of the vertices, and then of witnesses on curves that are copies of them; of the triangles.
+    // Numbers in the input: of the vertices, and then of witnesses, where those of the reference's vertices follow on
+    // the input's; of the triangles.
     Array<std::int32_t> from_vertices, from_triangles;
 
     // Sums over triangles are made lot by lot: so many of the input's triangles, of which those of numbers `first` to

@@ -37,10 +37,4 @@ class Witnesses {
     std::vector<float> nearest_;
 };
 
-// Appends the reference's vertices that are none of the mesh's to mesh.places, and makes each the witness of the
-// nearest triangle within the limit, or of the nearest in reach.
-template <class Real>
-void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const TriangleGrid& grid,
-                    float limit, int threads, Mesh<Real>& mesh);
-
 }  // namespace isocore::simplification

@@ -18,7 +18,8 @@ void PartFinder<Real>::find(const Cell& low, const Cell& high, Part& out) {
         std::array<std::int32_t, 3> corners;
         bool touches = false;
         for (std::size_t n = 0; n < 3; ++n) {
-            const std::size_t known = meet(reference_.corners(triangle)[n], low, high);
+            const std::size_t known =
+                meet(whole_.mesh.triangles[3 * static_cast<std::size_t>(triangle) + n], low, high);
             corners[n] = static_cast<std::int32_t>(known);
             touches = touches || met_[known].is_own;
         }
@@ -31,15 +32,14 @@ void PartFinder<Real>::find(const Cell& low, const Cell& high, Part& out) {
     sort_triangles(out);
 }
 
-// The triangles of all these cells, in their order. One that ends where a cell begins belongs to the cell before.
+// In their order, each once.
 template <class Real>
 void PartFinder<Real>::find_candidates(const Cell& low, const Cell& high) {
     candidates_.clear();
-    const Cell before{std::max(low[0] - 1, 0), std::max(low[1] - 1, 0), std::max(low[2] - 1, 0)};
-    reference_.each_run_between(before, high, [&](std::uint32_t first, std::uint32_t end) {
-        for (std::uint32_t n = first; n < end; ++n) candidates_.push_back(reference_.entry(n));
+    whole_.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
+        for (std::uint32_t n = first; n < end; ++n) candidates_.push_back(whole_.index.entry(n));
     });
-    if (reference_.is_in_order()) return;
+    if (whole_.index.is_in_order()) return;
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
 }
@@ -52,7 +52,7 @@ std::size_t PartFinder<Real>::meet(std::int32_t vertex, const Cell& low, const C
         const auto known = static_cast<std::size_t>(table_[at]);
         if (met_[known].number == vertex) return known;
     }
-    const Cell cell = reference_.cells().at(reference_.place(vertex));
+    const Cell cell = whole_.cells.at(whole_.mesh.vertices + 3 * static_cast<std::size_t>(vertex));
     bool is_own = true;
     for (std::size_t a = 0; a < 3; ++a) is_own = is_own && cell[a] >= low[a] && cell[a] <= high[a];
     const auto known = static_cast<std::int32_t>(met_.size());

@@ -1,14 +1,39 @@
 // part.hpp - What of a mesh lies in a box of cells: its vertices there, and all triangles that touch one of them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "simplification/reference.hpp"
+#include "simplification/cell_index.hpp"
+#include "simplification/cells.hpp"
+#include "simplification/types.hpp"
 
 namespace isocore::simplification {
+
+// A mesh, its triangles by cell, and the cells that boxes of it are made of; those of the index are this power of two
+// of them wide.
+template <class Real>
+struct IndexedMesh {
+    const MeshArrays<Real>& mesh;
+    const Cells& cells;
+    const CellIndex& index;
+    int bits;
+
+    // visit(first, end) of runs of the index's entries: those of all triangles that touch a vertex in the cells from
+    // `low` to `high`, both included, and of some others.
+    template <class Visit>
+    void each_run_between(Cell low, Cell high, const Visit& visit) const {
+        for (std::size_t a = 0; a < 3; ++a) {
+            low[a] =
+                std::max((low[a] >> bits) - 1, 0);  // a triangle that ends where a cell begins may be in the one before
+            high[a] >>= bits;
+        }
+        index.each_run_between(low, high, visit);
+    }
+};
 
 // Numbered as they would be if the whole mesh were: of two vertices or triangles, the same one comes first.
 struct Part {
@@ -30,8 +55,7 @@ struct Part {
 template <class Real>
 class PartFinder {
   public:
-    // Of the mesh that the reference is.
-    explicit PartFinder(const Reference<Real>& reference) : reference_(reference) {}
+    explicit PartFinder(const IndexedMesh<Real>& whole) : whole_(whole) {}
 
     // Finds what lies in the cells from `low` to `high`, both included: a brick of them, in the order of Morton.
     void find(const Cell& low, const Cell& high, Part& out);
@@ -49,7 +73,7 @@ class PartFinder {
     void number_vertices(Part& out);
     void sort_triangles(Part& out);
 
-    const Reference<Real>& reference_;
+    IndexedMesh<Real> whole_;
     std::vector<std::int32_t> candidates_;  // triangles
     std::vector<Vertex> met_;
     std::vector<std::int32_t> table_;  // by a hash of the vertex: as which it was met, or kNone

@@ -30,16 +30,16 @@ void Box::add(const Box& other) {
 template <class Real>
 void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& high) {
     found_.clear();
-    reference.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
+    reference.index().each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
         const std::size_t known = found_.size();
         found_.resize(known + (end - first));
         std::int32_t* const run = found_.data() + known - first;
-        for (std::uint32_t entry = first; entry < end; ++entry) run[entry] = reference.entry(entry);
+        for (std::uint32_t entry = first; entry < end; ++entry) run[entry] = reference.index().entry(entry);
         constexpr std::uint32_t kPerLine = 5;  // triangles in a line of memory
         for (std::uint32_t entry = first; entry < end; entry += kPerLine)
             ISOCORE_PREFETCH(reference.corners(run[entry]));
     });
-    if (!reference.repeats()) return;
+    if (!reference.index().repeats()) return;
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
 }

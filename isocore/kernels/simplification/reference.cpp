@@ -1,64 +1,43 @@
 #include "simplification/reference.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace isocore::simplification {
 
 template <class Real>
-Reference<Real>::Reference(const MeshArrays<Real>& mesh, const Cells& cells) : mesh_(mesh), cells_(cells) {
-    const std::size_t words = cells.count() / 64 + 2;
-    occupied_.assign(words, 0);
-    bool in_order = true;
-    std::size_t entries = 0, last = 0;
-    each_entry([&](std::int32_t, std::size_t cell) {
-        occupied_[cell / 64] |= std::uint64_t{1} << cell % 64;
-        in_order = in_order && cell >= last;
-        last = cell;
-        ++entries;
-    });
-    ranks_.resize(words);
-    std::uint32_t rank = 0;
-    for (std::size_t w = 0; w < words; ++w) {
-        ranks_[w] = rank;
-        rank += static_cast<std::uint32_t>(std::popcount(occupied_[w]));
-    }
-    starts_.assign(rank + 1, 0);
-    each_entry([&](std::int32_t, std::size_t cell) { ++starts_[rank_of(cell) + 1]; });
-    for (std::size_t n = 0; n < rank; ++n) starts_[n + 1] += starts_[n];
-    if (!in_order || entries != mesh.triangle_count) {
-        entries_.resize(entries);
-        Array<std::uint32_t> next(starts_);
-        each_entry([&](std::int32_t t, std::size_t cell) { entries_[next[rank_of(cell)]++] = t; });
-    }
+Reference<Real>::Reference(const MeshArrays<Real>& mesh, const Cells& cells)
+    : mesh_(mesh), cells_(cells), index_(index_of(mesh, cells)) {
     find_border();
 }
 
-// visit(triangle, cell) of each cell that a triangle's box touches; a box that ends where a cell begins does not touch
-// that. A triangle of marching cubes has one cell.
+// In each cell that a triangle's box touches; a box that ends where a cell begins does not touch that. A triangle of
+// marching cubes has one cell.
 template <class Real>
-template <class Visit>
-void Reference<Real>::each_entry(const Visit& visit) const {
-    for (std::size_t t = 0; t < mesh_.triangle_count; ++t) {
-        Cell low, high;
-        for (std::size_t a = 0; a < 3; ++a) {
-            std::array<double, 3> at;
-            for (std::size_t n = 0; n < 3; ++n)
-                at[n] =
-                    static_cast<double>(mesh_.vertices[3 * static_cast<std::size_t>(mesh_.triangles[3 * t + n]) + a]);
-            const double least = cells_.in_cells(std::min({at[0], at[1], at[2]}), a);
-            const double most = cells_.in_cells(std::max({at[0], at[1], at[2]}), a);
-            low[a] = cells_.clamped(least, a);
-            high[a] = cells_.clamped(most, a);
-            if (high[a] > low[a] && static_cast<double>(high[a]) == most) --high[a];
-        }
-        for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-                for (std::int32_t i = low[0]; i <= high[0]; ++i) visit(static_cast<std::int32_t>(t), number({i, j, k}));
+CellIndex Reference<Real>::index_of(const MeshArrays<Real>& mesh, const Cells& cells) {
+    const auto each_entry = [&](const auto& visit) {
+        for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
+            Cell low, high;
+            for (std::size_t a = 0; a < 3; ++a) {
+                std::array<double, 3> at;
+                for (std::size_t n = 0; n < 3; ++n)
+                    at[n] =
+                        static_cast<double>(mesh.vertices[3 * static_cast<std::size_t>(mesh.triangles[3 * t + n]) + a]);
+                const double least = cells.in_cells(std::min({at[0], at[1], at[2]}), a);
+                const double most = cells.in_cells(std::max({at[0], at[1], at[2]}), a);
+                low[a] = cells.clamped(least, a);
+                high[a] = cells.clamped(most, a);
+                if (high[a] > low[a] && static_cast<double>(high[a]) == most) --high[a];
+            }
+            for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+                for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                    for (std::int32_t i = low[0]; i <= high[0]; ++i)
+                        visit(static_cast<std::int32_t>(t), cells.number({i, j, k}));
+                }
             }
         }
-    }
+    };
+    return CellIndex(cells.dims, mesh.triangle_count, each_entry);
 }
 
 // Around a vertex inside the surface, each neighbour is the end of one opposite side and the start of another; at the

@@ -2,8 +2,10 @@
 #include "simplification/remains.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/large_pages.hpp"
+#include "simplification/first_witnesses.hpp"
 #include "simplification/part.hpp"
 
 namespace isocore::simplification {
@@ -17,7 +19,7 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, const Part& part) {
     for (std::size_t v = 0; v < vertex_number; ++v) places[v] = {input.place(from_vertices[v]), kNone};
     triangles.resize(count);
     for (std::size_t t = 0; t < count; ++t) triangles[t] = {part.corners[t], kNone};
-    proved.assign(count, 0.0f);
+    proved.assign(count, 0.0f);  // as those of the reference
     sheets_.resize(input.sheets == nullptr ? 0 : count);
     for (std::size_t t = 0; t < sheets_.size(); ++t) sheets_[t] = input.sheets[from_triangles[t]];
     vertices.assign(vertex_number, {});
@@ -26,6 +28,22 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, const Part& part) {
     constexpr int kOneThread = 1;
     find_rings(kOneThread);
     quadrics.assign(vertex_number, nullptr);
+}
+
+// The last first, so that the first is the list's head.
+template <class Real>
+void Mesh<Real>::take_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference,
+                                const FirstWitnesses& witnesses, std::size_t first) {
+    std::fill(proved.begin(), proved.end(), std::numeric_limits<float>::infinity());
+    for (std::size_t t = first; t < triangles.size(); ++t) {
+        const auto own = witnesses.of(from_triangles[t]);
+        for (std::size_t n = own.size(); n-- > 0;) {
+            const std::int32_t vertex = own[n];
+            from_vertices.push_back(static_cast<std::int32_t>(input.vertex_count) + vertex);
+            places.push_back({reference.place(vertex), triangles[t].witness});
+            triangles[t].witness = static_cast<std::int32_t>(places.size() - 1);
+        }
+    }
 }
 
 template <class Real>
@@ -77,8 +95,9 @@ void Remains::shrink_to_fit() {
 template <class Real>
 class Joining {
   public:
-    Joining(Mesh<Real>& mesh, const MeshArrays<Real>& input, const std::vector<Remains>& parts)
-        : mesh_(mesh), input_(input), numbers_(input.vertex_count, kNone) {
+    Joining(Mesh<Real>& mesh, const MeshArrays<Real>& input, const MeshArrays<Real>& reference,
+            const std::vector<Remains>& parts)
+        : mesh_(mesh), input_(input), reference_(reference), numbers_(input.vertex_count, kNone) {
         std::size_t vertices = 0, faces = 0, rings = 0, quadrics = 0, witnesses = 0, curves = 0;
         for (const Remains& part : parts) {
             vertices += part.vertices.size();
@@ -170,11 +189,16 @@ class Joining {
         return kNone;
     }
 
+    std::array<Real, 3> place_of(std::int32_t witness) const {
+        const auto beyond = witness - static_cast<std::int32_t>(input_.vertex_count);
+        return beyond < 0 ? input_.place(witness) : reference_.place(beyond);
+    }
+
     // In front of those that a triangle has.
     void add_witnesses(const std::int32_t* from, std::size_t count, Triangle& triangle) {
         for (std::size_t n = 0; n < count; ++n) {
             const std::size_t number = next_witness_ + n;
-            mesh_.places[number] = {input_.place(from[n]),
+            mesh_.places[number] = {place_of(from[n]),
                                     n + 1 == count ? triangle.witness : static_cast<std::int32_t>(number + 1)};
         }
         if (count > 0) triangle.witness = static_cast<std::int32_t>(next_witness_);
@@ -210,7 +234,7 @@ class Joining {
     }
 
     Mesh<Real>& mesh_;
-    const MeshArrays<Real>& input_;
+    const MeshArrays<Real>&input_, &reference_;
     Array<std::int32_t> numbers_;                 // of the whole's vertices, or kNone
     std::vector<std::int32_t> numbers_of_faces_;  // of the part
     std::size_t first_ = 0;                       // vertex of the part
@@ -219,8 +243,8 @@ class Joining {
 };
 
 template <class Real>
-void Mesh<Real>::take(const MeshArrays<Real>& input, std::vector<Remains>& parts) {
-    Joining<Real> joining(*this, input, parts);
+void Mesh<Real>::take(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, std::vector<Remains>& parts) {
+    Joining<Real> joining(*this, input, reference, parts);
     constexpr std::size_t kAtOnce = 16;
     for (std::size_t n = 0; n < parts.size(); ++n) {
         joining.add(parts[n]);

@@ -23,7 +23,7 @@ bool Rows::cover_all(const Cell& low, const Cell& high) const {
 }
 
 void Rows::copy(const Reference<float>& reference, std::int32_t j, std::int32_t k, Row& row) {
-    const auto cells = reference.occupied({low_[0], j, k}, high_[0] - low_[0] + 1);
+    const auto cells = reference.index().occupied({low_[0], j, k}, high_[0] - low_[0] + 1);
     row = {cells.bits, starts_.size()};
     const std::uint32_t first = cells.starts[0], end = cells.starts[std::popcount(cells.bits)];
     for (int n = 0; n <= std::popcount(cells.bits); ++n)

@@ -11,9 +11,10 @@
 
 #include "common/large_pages.hpp"
 #include "common/parallel.hpp"
-#include "common/parallel_each.hpp"
 #include "simplification/apart.hpp"
+#include "simplification/boxes.hpp"
 #include "simplification/contraction.hpp"
+#include "simplification/first_witnesses.hpp"
 #include "simplification/measuring.hpp"
 #include "simplification/sweeps.hpp"
 
@@ -23,8 +24,7 @@ namespace {
 constexpr int kPhases = 4;
 constexpr float kFirstLimit = 1.0f / 16;  // cells, where a number of triangles is asked for
 // How far the boxes of each phase are shifted along each axis, in quarters of a box.
-constexpr std::array<std::array<std::int32_t, 3>, kPhases> kShifts{std::array{0, 0, 0}, std::array{2, 2, 2},
-                                                                   std::array{1, 3, 1}, std::array{3, 1, 3}};
+constexpr std::array<Cell, kPhases> kShifts{Cell{0, 0, 0}, Cell{2, 2, 2}, Cell{1, 3, 1}, Cell{3, 1, 3}};
 
 template <class Real>
 void check(const MeshArrays<Real>& input) {
@@ -34,12 +34,11 @@ void check(const MeshArrays<Real>& input) {
     }
 }
 
-// Can the first phase make a mesh for each box? Rounding lets triangles of neighbouring boxes meet, a number of
-// triangles asked for is reached by edges of the whole mesh, and witnesses are looked for in all of it.
+// Can the first phase make a mesh for each box? Rounding lets triangles of neighbouring boxes meet, and a number of
+// triangles asked for is reached by edges of the whole mesh.
 template <class Real>
-bool goes_apart(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
-    return input.vertices == reference.vertices && input.triangles == reference.triangles && input.written == nullptr &&
-           options.rounding == 0 && options.most_triangles == 0;
+bool goes_apart(const MeshArrays<Real>& input, const Options& options) {
+    return !options.together && input.written == nullptr && options.rounding == 0 && options.most_triangles == 0;
 }
 
 template <class Real>
@@ -50,28 +49,15 @@ class Simplification {
           options_(options),
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
-          mesh_(options.stretch, options.rounding),
-          grid_(cells_, options.rounding) {
-        if (goes_apart(input, reference, options)) {
+          mesh_(options.stretch, options.rounding) {
+        if (goes_apart(input, options)) {
             reference_ = std::make_unique<Reference<Real>>(reference, cells_);
-            tally_ = contract_apart(*reference_, limit_, options, mesh_);
+            tally_ = contract_apart(input, *reference_, limit_, options, mesh_);
             first_phase_ = 1;
-            prepare_workers();
         } else {
-            // Witnesses come behind the vertices, without a copy of these; room that stays empty takes no memory.
-            if (input.vertices != reference.vertices) mesh_.places.reserve(input.vertex_count + reference.vertex_count);
-            parallel_for(options.threads, 2, [&](std::size_t n) {  // two that know nothing of each other
-                if (n == 0)
-                    mesh_.take_all(input, cells_, options.threads);
-                else
-                    reference_ = std::make_unique<Reference<Real>>(reference, cells_);
-            });
-            prepare_workers();
-            find_witnesses(input, reference, grid_, limit_, options.threads, mesh_);
-            return_freed_memory();
-            if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
-            if (input.vertices == reference.vertices) std::fill(mesh_.proved.begin(), mesh_.proved.end(), 0.0f);
+            take_all(reference);
         }
+        prepare_workers();
     }
 
     // The phases that are still to come.
@@ -83,7 +69,8 @@ class Simplification {
     // small bound allows, and then those of ever larger bounds.
     void run_to_count() {
         std::vector<std::int32_t> movable;
-        Contraction<Real>& worker = *workers_[0];
+        enter_all(*workers_[0]);
+        Contraction<Real>& worker = workers_[0]->contraction;
         const float farthest = limit_;
         for (limit_ = std::min(kFirstLimit, farthest);; limit_ = std::min(2 * limit_, farthest)) {
             worker.set_limit(limit_);
@@ -105,7 +92,7 @@ class Simplification {
 
     Simplified<Real> take() {
         Simplified<Real> out;
-        for (const auto& worker : workers_) tally_.add({worker->collapses, worker->refused()});
+        for (const auto& worker : workers_) tally_.add({worker->contraction.collapses, worker->contraction.refused()});
         out.facts.collapses = tally_.collapses;
         out.facts.sheets.resize(input_.sheet_count);
         for (std::size_t sheet = 0; sheet < tally_.refused.size(); ++sheet) {
@@ -116,7 +103,7 @@ class Simplification {
         const Spot other{static_cast<float>(options_.other[0]), static_cast<float>(options_.other[1]),
                          static_cast<float>(options_.other[2])};
         std::vector<Backward<Real>*> provers;
-        for (auto& worker : workers_) provers.push_back(&worker->backward());
+        for (auto& worker : workers_) provers.push_back(&worker->contraction.backward());
         measure(mesh_, provers, limit_, other, out.facts);
         workers_.clear();
         reference_.reset();
@@ -126,24 +113,77 @@ class Simplification {
     }
 
   private:
+    // A thread's.
+    struct Worker {
+        Worker(Mesh<Real>& mesh, const Reference<Real>& reference, float limit, const Options& options)
+            : grid(options.rounding), contraction(mesh, reference, grid, limit) {}
+
+        TriangleGrid grid;
+        Contraction<Real> contraction;
+    };
+
+    void take_all(const MeshArrays<Real>& reference) {
+        const bool is_own = input_.vertices == reference.vertices;
+        // Witnesses come behind the vertices, without a copy of these; room that stays empty takes no memory.
+        if (!is_own) mesh_.places.reserve(input_.vertex_count + reference.vertex_count);
+        FirstWitnesses witnesses;
+        parallel_for(options_.threads, 2, [&](std::size_t n) {  // two that know nothing of each other
+            if (n == 0)
+                mesh_.take_all(input_, cells_, options_.threads);
+            else
+                reference_ = std::make_unique<Reference<Real>>(reference, cells_);
+        });
+        if (!is_own) {
+            const Cubes cubes(cells_, options_.rounding);
+            witnesses = find_witnesses(input_, cubes, index_by_cubes(input_, cubes), reference, mesh_.stretch(), limit_,
+                                       options_.threads);
+            mesh_.take_witnesses(input_, reference, witnesses, 0);
+        }
+        return_freed_memory();
+        if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
+    }
+
     void prepare_workers() {
         costs_.resize(mesh_.vertex_count());
-        for (int n = 0; n < std::max(options_.threads, 1); ++n)
-            workers_.push_back(std::make_unique<Contraction<Real>>(mesh_, *reference_, grid_, limit_));
-        for (auto& worker : workers_) worker->backward().prove_all(std::isfinite(options_.max_error));
-        enter_triangles();
+        for (int n = 0; n < std::max(options_.threads, 1); ++n) {
+            workers_.push_back(std::make_unique<Worker>(mesh_, *reference_, limit_, options_));
+            workers_.back()->contraction.backward().prove_all(std::isfinite(options_.max_error));
+        }
     }
 
     // Contracts edges that lie in a box with all that they change, each box for itself.
     void run(int phase) {
-        const std::vector<std::vector<std::int32_t>> boxes = find_boxes(kShifts[static_cast<std::size_t>(phase)]);
+        Cell shift = kShifts[static_cast<std::size_t>(phase)];
+        for (std::int32_t& quarters : shift) quarters *= kBoxCells / 4;
+        const std::vector<MeshBox> boxes = find_boxes(mesh_, cells_, shift, options_);
         std::atomic<std::size_t> next{0};
         parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
-            for (std::size_t box = next++; box < boxes.size(); box = next++) {
-                enter_box(boxes[box], phase, workers_[worker]->backward());
-                sweep(boxes[box], mesh_, *workers_[worker], costs_, std::numeric_limits<std::size_t>::max());
+            for (std::size_t n = next++; n < boxes.size(); n = next++) {
+                enter_box(boxes[n], phase, *workers_[worker]);
+                sweep(boxes[n].vertices, mesh_, workers_[worker]->contraction, costs_,
+                      std::numeric_limits<std::size_t>::max());
             }
         });
+    }
+
+    void enter_box(const MeshBox& box, int phase, Worker& worker) const {
+        worker.grid.cover(cells_, box.low, box.high);
+        for (const std::int32_t triangle : box.triangles) worker.grid.enter(mesh_, triangle);
+        worker.contraction.look_through_new_grid();
+        constexpr int kPhasesWithCopies = 2;  // the last phases change too little for copies to pay
+        if (phase < kPhasesWithCopies)
+            worker.contraction.backward().enter_box(box.low, box.high, limit_);
+        else
+            worker.contraction.backward().leave_box();
+    }
+
+    // The whole mesh as one box.
+    void enter_all(Worker& worker) const {
+        Cell last;
+        for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<std::int32_t>(cells_.dims[a] - 1);
+        worker.grid.cover(cells_, {0, 0, 0}, last);
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) worker.grid.enter(mesh_, static_cast<std::int32_t>(t));
+        worker.contraction.look_through_new_grid();
     }
 
     // Nothing is further away from anything.
@@ -154,89 +194,6 @@ class Simplification {
         return sum;
     }
 
-    // Some triangles' cubes at a time; each thread enters those that are its own.
-    void enter_triangles() {
-        constexpr std::size_t kAtOnce = 4096, kRuns = 8;
-        const std::size_t count = mesh_.triangles.size(), shares = workers_.size();
-        std::vector<TriangleGrid::Spare> spares(shares);
-        std::vector<std::vector<std::array<std::int32_t, 2>>> all(shares == 1 ? 1 : kRuns * shares);
-        for (std::size_t first = 0; first < count; first += all.size() * kAtOnce) {
-            parallel_for(options_.threads, all.size(), [&](std::size_t run) {
-                std::vector<std::int32_t> cubes;
-                all[run].clear();
-                const std::size_t begin = first + run * kAtOnce;
-                for (std::size_t t = begin; t < std::min(count, begin + kAtOnce); ++t) {
-                    cubes.clear();
-                    grid_.cubes_of(mesh_, static_cast<std::int32_t>(t), cubes);
-                    for (const std::int32_t cube : cubes) all[run].push_back({cube, static_cast<std::int32_t>(t)});
-                }
-            });
-            parallel_for(options_.threads, shares, [&](std::size_t share) {
-                for (const auto& some : all) {
-                    for (const auto& [cube, triangle] : some) {
-                        if (static_cast<std::size_t>(cube) * shares / grid_.cube_count() == share)
-                            grid_.enter(triangle, {&cube, 1}, spares[share]);
-                    }
-                }
-            });
-        }
-    }
-
-    // visit(vertex) of all, by all threads.
-    template <class Visit>
-    void each_vertex(const Visit& visit) const {
-        constexpr std::size_t kAtOnce = 16384;
-        parallel_each(options_.threads, mesh_.vertex_count(), kAtOnce, visit);
-    }
-
-    // The vertices that may move, by the box that they lie in with all their neighbours.
-    std::vector<std::vector<std::int32_t>> find_boxes(const std::array<std::int32_t, 3>& shift) {
-        std::array<std::size_t, 3> dims;
-        for (std::size_t a = 0; a < 3; ++a) dims[a] = cells_.dims[a] / kBoxCells + 2;
-        std::vector<std::vector<std::int32_t>> boxes(dims[0] * dims[1] * dims[2]);
-        std::vector<std::uint32_t> box_of(mesh_.vertex_count());
-        each_vertex([&](std::size_t v) {
-            const Cell cell = cells_.at(mesh_.places[v].at.data());
-            const auto box = [&](std::size_t a) {
-                return static_cast<std::size_t>((cell[a] + shift[a] * kBoxCells / 4) / kBoxCells);
-            };
-            box_of[v] = static_cast<std::uint32_t>(box(0) + dims[0] * (box(1) + dims[1] * box(2)));
-        });
-        each_vertex([&](std::size_t v) {
-            Vertex& vertex = mesh_.vertices[v];
-            vertex.movable = vertex.may_move() && has_ring_in_box(vertex, box_of[v], box_of);
-        });
-        for (std::size_t v = 0; v < box_of.size(); ++v) {
-            if (mesh_.vertices[v].movable) boxes[box_of[v]].push_back(static_cast<std::int32_t>(v));
-        }
-        std::erase_if(boxes, [](const auto& box) { return box.empty(); });
-        // The longest first, so that no thread is left with a long one at the end.
-        std::stable_sort(boxes.begin(), boxes.end(),
-                         [](const auto& one, const auto& other) { return one.size() > other.size(); });
-        return boxes;
-    }
-
-    // vertices: those of the box. The last phases change too little for copies to pay.
-    void enter_box(const std::vector<std::int32_t>& vertices, int phase, Backward<Real>& backward) const {
-        constexpr int kPhasesWithCopies = 2;
-        if (phase >= kPhasesWithCopies) return backward.leave_box();
-        Cell low = cells_.at(mesh_.places[static_cast<std::size_t>(vertices.front())].at.data()), high{};
-        for (std::size_t a = 0; a < 3; ++a) {
-            const std::int32_t shift = kShifts[static_cast<std::size_t>(phase)][a] * kBoxCells / 4;
-            low[a] = (low[a] + shift) / kBoxCells * kBoxCells - shift;
-            high[a] = low[a] + kBoxCells - 1;
-        }
-        backward.enter_box(low, high, limit_);
-    }
-
-    bool has_ring_in_box(const Vertex& vertex, std::uint32_t box, const std::vector<std::uint32_t>& box_of) const {
-        return std::all_of(vertex.ring, vertex.ring + vertex.count, [&](std::int32_t t) {
-            const auto& corners = mesh_.triangles[static_cast<std::size_t>(t)].corners;
-            return std::all_of(corners.begin(), corners.end(),
-                               [&](std::int32_t corner) { return box_of[static_cast<std::size_t>(corner)] == box; });
-        });
-    }
-
     MeshArrays<Real> input_;
     const Options& options_;
     Cells cells_;
@@ -245,9 +202,8 @@ class Simplification {
     std::unique_ptr<Reference<Real>> reference_;
     Tally tally_;  // of the first phase, where that is done apart
     int first_phase_ = 0;
-    TriangleGrid grid_;
     std::vector<float> costs_;
-    std::vector<std::unique_ptr<Contraction<Real>>> workers_;
+    std::vector<std::unique_ptr<Worker>> workers_;
 };
 
 }  // namespace

@@ -1,96 +1,53 @@
 #include "simplification/triangle_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace isocore::simplification {
 
-TriangleGrid::TriangleGrid(const Cells& cells, double rounding) : rounding_(rounding * cells.per_cell) {
-    chunks_.reserve(kMostChunks);  // so that they never move while others read them
-    cover(cells);
-}
+TriangleGrid::TriangleGrid(double rounding) : rounding_(rounding), cubes_({}, rounding) {}
 
-void TriangleGrid::cover(const Cells& cells) {
-    cells_ = cells;
-    for (std::size_t a = 0; a < 3; ++a) dims_[a] = ((cells.dims[a] - 1) >> kBits) + 1;
-    first_.resize(dims_[0] * dims_[1] * dims_[2]);
-    std::fill(first_.begin(), first_.end(), kNone);
-    chunks_.clear();
-}
-
-template <class Real>
-void TriangleGrid::cubes_of(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const {
-    // Rounding depends on which corner is the first: always the same one, or a triangle might be left in a cube.
-    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-    std::array<std::array<float, 3>, 3> at;  // corners, in cubes from the low one
-    Cell low{}, high{};
+// Blocks are kept for what comes.
+void TriangleGrid::cover(const Cells& cells, const Cell& low, const Cell& high) {
+    Cells own = cells;
     for (std::size_t a = 0; a < 3; ++a) {
-        std::array<double, 3> in_cells;
-        for (std::size_t n = 0; n < 3; ++n) in_cells[n] = cells_.in_cells(static_cast<double>((*corners[n])[a]), a);
-        const auto cube = [&](double place) { return cells_.clamped(place, a) >> kBits; };
-        low[a] = cube(std::min({in_cells[0], in_cells[1], in_cells[2]}) - rounding_);
-        high[a] = cube(std::max({in_cells[0], in_cells[1], in_cells[2]}) + rounding_);
-        for (std::size_t n = 0; n < 3; ++n)
-            at[n][a] = static_cast<float>(in_cells[n] / (1 << kBits) - static_cast<double>(low[a]));
+        own.origin[a] += low[a] / cells.per_cell;
+        own.dims[a] = static_cast<std::size_t>(high[a] - low[a] + 1);
     }
-    if (low == high) return out.push_back(number(low));
-    const Spot one = minus(at[1], at[0]), other = minus(at[2], at[0]), normal = cross(one, other);
-    constexpr float kHalf = 0.5f + 1e-3f;  // of a cube, with some room for rounding
-    float reach = kHalf * sum_of_sizes(normal);
-    if (rounding_ > 0) {  // moves the plane, and turns it
-        const auto moved = static_cast<float>(4 * rounding_ / (1 << kBits));
-        const auto across = static_cast<float>(high[0] - low[0] + high[1] - low[1] + high[2] - low[2] + 3);
-        reach += moved * (sum_of_sizes(normal) + (sum_of_sizes(one) + sum_of_sizes(other) + moved) * across);
-    }
-    for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-        const float z = normal[2] * (static_cast<float>(k - low[2]) + 0.5f - at[0][2]);
-        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-            const float yz = z + normal[1] * (static_cast<float>(j - low[1]) + 0.5f - at[0][1]);
-            for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-                const float xyz = yz + normal[0] * (static_cast<float>(i - low[0]) + 0.5f - at[0][0]);
-                if (!(std::abs(xyz) > reach)) out.push_back(number({i, j, k}));
-            }
-        }
-    }
+    cubes_ = Cubes(own, rounding_);
+    first_.resize(cubes_.count());
+    std::fill(first_.begin(), first_.end(), kNone);
+    spare_ = kNone;
+    used_ = 0;
 }
 
 template <class Real>
 void TriangleGrid::cubes_of(const Mesh<Real>& mesh, std::int32_t triangle, std::vector<std::int32_t>& out) const {
     const auto& c = mesh.triangles[static_cast<std::size_t>(triangle)].corners;
     const auto place = [&](std::size_t n) { return &mesh.places[static_cast<std::size_t>(c[n])].at; };
-    cubes_of<Real>({place(0), place(1), place(2)}, out);
+    cubes_.touched<Real>({place(0), place(1), place(2)}, out);
 }
 
-void TriangleGrid::add_chunk(Spare& spare) {
-    const std::lock_guard<std::mutex> lock(guard_);
-    if (chunks_.size() == kMostChunks) throw std::length_error("simplification: too many triangles in too many cells");
-    const auto start = static_cast<std::int32_t>(chunks_.size() << kChunkBits);
-    constexpr std::int32_t kBlocks = 1 << kChunkBits;
-    std::unique_ptr<Block[]> chunk(new Block[kBlocks]);
-    for (std::int32_t n = 0; n < kBlocks; ++n) chunk[static_cast<std::size_t>(n)].next = start + n + 1;
-    chunk[kBlocks - 1].next = kNone;
-    chunks_.push_back(std::move(chunk));
-    spare.first = start;
+template <class Real>
+void TriangleGrid::enter(const Mesh<Real>& mesh, std::int32_t triangle) {
+    touched_.clear();
+    cubes_of(mesh, triangle, touched_);
+    for (const std::int32_t cube : touched_) enter_in(triangle, first_[static_cast<std::size_t>(cube)]);
 }
 
-void TriangleGrid::enter(std::int32_t triangle, std::span<const std::int32_t> cubes, Spare& spare) {
-    for (const std::int32_t cube : cubes) enter(triangle, first_[static_cast<std::size_t>(cube)], spare);
-}
-
-void TriangleGrid::remove(std::int32_t triangle, const std::vector<std::int32_t>& cubes, Spare& spare) {
-    for (const std::int32_t cube : cubes) remove(triangle, first_[static_cast<std::size_t>(cube)], spare);
+void TriangleGrid::remove(std::int32_t triangle, const std::vector<std::int32_t>& cubes) {
+    for (const std::int32_t cube : cubes) remove_from(triangle, first_[static_cast<std::size_t>(cube)]);
 }
 
 // Both are in order, so that one pass through them tells which cubes are in both, and stay as they are.
-void TriangleGrid::move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to,
-                        Spare& spare) {
+void TriangleGrid::move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to) {
     auto before = from.begin(), now = to.begin();
     while (before != from.end() || now != to.end()) {
         if (now == to.end() || (before != from.end() && *before < *now)) {
-            remove(triangle, first_[static_cast<std::size_t>(*before++)], spare);
+            remove_from(triangle, first_[static_cast<std::size_t>(*before++)]);
         } else if (before == from.end() || *now < *before) {
-            enter(triangle, first_[static_cast<std::size_t>(*now++)], spare);
+            enter_in(triangle, first_[static_cast<std::size_t>(*now++)]);
         } else {
             ++before;
             ++now;
@@ -98,14 +55,24 @@ void TriangleGrid::move(std::int32_t triangle, std::span<const std::int32_t> fro
     }
 }
 
-void TriangleGrid::enter(std::int32_t triangle, std::int32_t& first, Spare& spare) {
+std::int32_t TriangleGrid::take_block() {
+    if (spare_ != kNone) {
+        const std::int32_t taken = spare_;
+        spare_ = block(taken).next;
+        return taken;
+    }
+    if (used_ == std::numeric_limits<std::int32_t>::max())
+        throw std::length_error("simplification: too many triangles in too many cells");
+    if (static_cast<std::size_t>(used_) >> kChunkBits == chunks_.size())
+        chunks_.push_back(std::unique_ptr<Block[]>(new Block[std::size_t{1} << kChunkBits]));
+    return used_++;
+}
+
+void TriangleGrid::enter_in(std::int32_t triangle, std::int32_t& first) {
     if (first == kNone || block(first).triangles.back() != kNone) {
-        if (spare.first == kNone) add_chunk(spare);
-        const std::int32_t taken = spare.first;
-        Block& own = block(taken);
-        spare.first = own.next;
-        own.triangles.fill(kNone);
-        own.next = first;
+        const std::int32_t taken = take_block();
+        block(taken).triangles.fill(kNone);
+        block(taken).next = first;
         first = taken;
     }
     auto& triangles = block(first).triangles;
@@ -113,7 +80,7 @@ void TriangleGrid::enter(std::int32_t triangle, std::int32_t& first, Spare& spar
 }
 
 // The last triangle of the first block takes the place of the one that goes.
-void TriangleGrid::remove(std::int32_t triangle, std::int32_t& first, Spare& spare) {
+void TriangleGrid::remove_from(std::int32_t triangle, std::int32_t& first) {
     for (std::int32_t b = first; b != kNone; b = block(b).next) {
         auto& triangles = block(b).triangles;
         const auto found = std::find(triangles.begin(), triangles.end(), triangle);
@@ -126,8 +93,8 @@ void TriangleGrid::remove(std::int32_t triangle, std::int32_t& first, Spare& spa
         if (head.triangles.front() == kNone) {
             const std::int32_t emptied = first;
             first = head.next;
-            head.next = spare.first;
-            spare.first = emptied;
+            head.next = spare_;
+            spare_ = emptied;
         }
         return;
     }
@@ -135,7 +102,7 @@ void TriangleGrid::remove(std::int32_t triangle, std::int32_t& first, Spare& spa
 
 template void TriangleGrid::cubes_of(const Mesh<float>&, std::int32_t, std::vector<std::int32_t>&) const;
 template void TriangleGrid::cubes_of(const Mesh<double>&, std::int32_t, std::vector<std::int32_t>&) const;
-template void TriangleGrid::cubes_of(std::array<const std::array<float, 3>*, 3>, std::vector<std::int32_t>&) const;
-template void TriangleGrid::cubes_of(std::array<const std::array<double, 3>*, 3>, std::vector<std::int32_t>&) const;
+template void TriangleGrid::enter(const Mesh<float>&, std::int32_t);
+template void TriangleGrid::enter(const Mesh<double>&, std::int32_t);
 
 }  // namespace isocore::simplification

@@ -12,6 +12,8 @@
 
 namespace isocore::simplification {
 
+inline constexpr std::int32_t kNone = -1;  // instead of the number of a vertex or of a triangle
+
 struct Options {
     // How far the reference's vertices may lie from the surface, and the surface's points from the reference. The unit
     // is that of stretched coordinates.
@@ -26,6 +28,7 @@ struct Options {
     // How far writing moves a vertex at most, once it is brought back to these coordinates.
     double rounding = 0;
     int threads = 1;
+    bool together = false;  // the first phase has one mesh, instead of one for each box: the result is the same
 };
 
 // Why an edge was not contracted; README.md has the rules.
@@ -85,6 +88,7 @@ struct MeshArrays {
     // Where each vertex is written, x, y, z: elsewhere, since it is turned, stretched and rounded. None where it stays.
     const double* written = nullptr;
 
+    bool is_same(const MeshArrays& other) const { return vertices == other.vertices && triangles == other.triangles; }
     std::array<Real, 3> place(std::int32_t vertex) const {
         const Real* const at = vertices + 3 * static_cast<std::size_t>(vertex);
         return {at[0], at[1], at[2]};

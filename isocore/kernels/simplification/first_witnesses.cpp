@@ -1,25 +1,27 @@
-// witnesses.cpp - Which of the reference's vertices each triangle answers for when simplification begins.
+#include "simplification/first_witnesses.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "common/parallel_each.hpp"
-#include "simplification/outward.hpp"
+#include "simplification/mesh.hpp"
+#include "simplification/morton.hpp"
 
 namespace isocore::simplification {
 namespace {
 
 // The reference's vertices that are not vertices of the input. Both are mostly in the same order.
 template <class Real>
-std::vector<std::int32_t> others(const MeshArrays<Real>& input, const MeshArrays<Real>& reference) {
+Array<std::int32_t> others(const MeshArrays<Real>& input, const MeshArrays<Real>& reference) {
     const auto at = [](const MeshArrays<Real>& mesh, std::size_t n) {
         const Real* place = mesh.vertices + 3 * n;
         return std::array<Real, 3>{place[0], place[1], place[2]};
     };
-    std::vector<std::int32_t> out;
+    Array<std::int32_t> out;
     out.reserve(reference.vertex_count - std::min(reference.vertex_count, input.vertex_count));
     std::size_t next = 0;
     for (std::size_t n = 0; n < reference.vertex_count; ++n) {
@@ -77,8 +79,9 @@ float squared_distance_to_box(const Spot& a, const Spot& b, const Spot& c) {
 template <class Real>
 class Nearest {
   public:
-    Nearest(const Mesh<Real>& mesh, const TriangleGrid& grid, const std::array<Real, 3>& place)
-        : mesh_(mesh), grid_(grid), place_(place) {}
+    Nearest(const MeshArrays<Real>& mesh, const Cells& cells, const CellIndex& index, const Spot& stretch,
+            const std::array<Real, 3>& place)
+        : mesh_(mesh), cells_(cells), index_(index), stretch_(stretch), place_(place) {}
 
     // Most are found in the cube around the place, or in those that are no further away than what was found there.
     // Else within ever more; kNone if there are no triangles.
@@ -100,14 +103,13 @@ class Nearest {
 
     // Looks at the cubes that are so near. Are these all?
     bool look_within(float reach) {
-        const Cells& cells = grid_.cells();
         Cell low{}, high{};
         bool is_all = true;
         for (std::size_t a = 0; a < 3; ++a) {
-            const double step = static_cast<double>(reach / mesh_.stretch()[a]), at = static_cast<double>(place_[a]);
-            low[a] = cells.clamped(cells.in_cells(at - step, a), a) >> TriangleGrid::kBits;
-            high[a] = cells.clamped(cells.in_cells(at + step, a), a) >> TriangleGrid::kBits;
-            const std::size_t last = (cells.dims[a] - 1) >> TriangleGrid::kBits;
+            const double step = static_cast<double>(reach / stretch_[a]), at = static_cast<double>(place_[a]);
+            low[a] = cells_.clamped(cells_.in_cells(at - step, a), a) >> Cubes::kBits;
+            high[a] = cells_.clamped(cells_.in_cells(at + step, a), a) >> Cubes::kBits;
+            const std::size_t last = (cells_.dims[a] - 1) >> Cubes::kBits;
             is_all = is_all && low[a] == 0 && static_cast<std::size_t>(high[a]) == last;
         }
         const auto is_seen = [&](const Cell& cube) {
@@ -119,8 +121,11 @@ class Nearest {
         for (std::int32_t k = low[2]; k <= high[2]; ++k) {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
                 for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-                    if (!is_seen({i, j, k}))
-                        grid_.each_in(grid_.number({i, j, k}), [&](std::int32_t triangle) { look_at(triangle); });
+                    const Cell cube{i, j, k};
+                    if (is_seen(cube)) continue;
+                    index_.each_run_between(cube, cube, [&](std::uint32_t first, std::uint32_t end) {
+                        for (std::uint32_t n = first; n < end; ++n) look_at(index_.entry(n));
+                    });
                 }
             }
         }
@@ -130,21 +135,30 @@ class Nearest {
     }
 
     void look_at(std::int32_t triangle) {
-        const auto& c = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
-        const auto corner = [&](std::size_t n) {
-            return mesh_.relative(mesh_.places[static_cast<std::size_t>(c[n])].at, place_);
-        };
+        const std::int32_t* const c = mesh_.triangles + 3 * static_cast<std::size_t>(triangle);
+        const auto corner = [&](std::size_t n) { return relative(mesh_.place(c[n]), place_, stretch_); };
         const Spot at = corner(0), next = corner(1), last = corner(2);
         if (squared_distance_to_box(at, next, last) > best_) return;
         const float squared = squared_distance(at, next, last);
-        if (squared < best_ || (squared == best_ && triangle < found_)) {
+        if (squared < best_ || (squared == best_ && rank_of(triangle) < rank_of(found_))) {
             best_ = squared;
             found_ = triangle;
         }
     }
 
-    const Mesh<Real>& mesh_;
-    const TriangleGrid& grid_;
+    // Where a triangle comes in the order of a Mesh: by its lowest vertex.
+    auto rank_of(std::int32_t triangle) const {
+        const std::int32_t* const c = mesh_.triangles + 3 * static_cast<std::size_t>(triangle);
+        const auto rank = [&](std::int32_t vertex) {
+            return std::tuple(morton(cells_.at(mesh_.place(vertex).data()), kBrickBits), vertex);
+        };
+        return std::tuple(std::min({rank(c[0]), rank(c[1]), rank(c[2])}), triangle);
+    }
+
+    const MeshArrays<Real>& mesh_;
+    const Cells& cells_;
+    const CellIndex& index_;
+    const Spot& stretch_;
     const std::array<Real, 3>& place_;
     Cell low_{0, 0, 0}, high_{-1, -1, -1};  // seen already
     float best_ = std::numeric_limits<float>::infinity();
@@ -153,53 +167,60 @@ class Nearest {
 
 }  // namespace
 
-template <class Real>
-void find_witnesses(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const TriangleGrid& grid,
-                    float limit, int threads, Mesh<Real>& mesh) {
-    if (input.vertices == reference.vertices) return;
-    const std::vector<std::int32_t> numbers = others(input, reference);
-    const auto place = [&](std::size_t n) {
-        const Real* at = reference.vertices + 3 * static_cast<std::size_t>(numbers[n]);
-        return std::array<Real, 3>{at[0], at[1], at[2]};
-    };
-    std::vector<std::int32_t> triangles(numbers.size());
-    constexpr std::size_t kAtOnce = 4096;
-    parallel_each(threads, numbers.size(), kAtOnce, [&](std::size_t n) {
-        const std::array<Real, 3> at = place(n);
-        triangles[n] = Nearest<Real>(mesh, grid, at).find(limit);
-    });
-    // Those of one triangle follow each other in memory. Until they are there, a triangle's first witness is where its
-    // next one goes.
-    for (Triangle& triangle : mesh.triangles) triangle.witness = 0;
-    std::size_t count = 0;
-    for (const std::int32_t triangle : triangles) {
-        if (triangle == kNone) continue;
-        ++mesh.triangles[static_cast<std::size_t>(triangle)].witness;
-        ++count;
+FirstWitnesses::FirstWitnesses(const Array<std::int32_t>& vertices, const Array<std::int32_t>& nearest,
+                               std::size_t triangles) {
+    starts_.assign(triangles + 2, 0);  // one further, until the vertices are put in
+    for (const std::int32_t triangle : nearest) {
+        if (triangle != kNone) ++starts_[static_cast<std::size_t>(triangle) + 2];
     }
-    const std::size_t first = mesh.places.size();
-    auto end = static_cast<std::int32_t>(first);
-    for (Triangle& triangle : mesh.triangles) end += std::exchange(triangle.witness, end);
-    mesh.places.resize(first + count);
-    for (std::size_t n = numbers.size(); n-- > 0;) {
-        if (triangles[n] == kNone) continue;
-        const std::int32_t to = mesh.triangles[static_cast<std::size_t>(triangles[n])].witness++;
-        mesh.places[static_cast<std::size_t>(to)] = {place(n), to - 1};
+    for (std::size_t t = 2; t < starts_.size(); ++t) starts_[t] += starts_[t - 1];
+    vertices_.resize(starts_.back());
+    for (std::size_t n = 0; n < vertices.size(); ++n) {
+        if (nearest[n] != kNone) vertices_[starts_[static_cast<std::size_t>(nearest[n]) + 1]++] = vertices[n];
     }
-    auto begin = static_cast<std::int32_t>(first);
-    for (Triangle& triangle : mesh.triangles) {
-        const std::int32_t own_end = std::exchange(triangle.witness, kNone);
-        if (own_end > begin) {
-            mesh.places[static_cast<std::size_t>(begin)].next = kNone;
-            triangle.witness = own_end - 1;
-        }
-        begin = own_end;
-    }
+    starts_.pop_back();
 }
 
-template void find_witnesses(const MeshArrays<float>&, const MeshArrays<float>&, const TriangleGrid&, float, int,
-                             Mesh<float>&);
-template void find_witnesses(const MeshArrays<double>&, const MeshArrays<double>&, const TriangleGrid&, float, int,
-                             Mesh<double>&);
+template <class Real>
+CellIndex index_by_cubes(const MeshArrays<Real>& mesh, const Cubes& cubes) {
+    constexpr std::size_t kUsually = 8;  // cubes of a triangle, at most
+    std::vector<std::int32_t> touched;   // by each triangle in turn
+    std::vector<std::size_t> ends;
+    touched.reserve(kUsually * mesh.triangle_count);  // room that stays empty takes no memory
+    ends.reserve(mesh.triangle_count);
+    for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
+        const std::int32_t* const c = mesh.triangles + 3 * t;
+        const std::array<std::array<Real, 3>, 3> at{mesh.place(c[0]), mesh.place(c[1]), mesh.place(c[2])};
+        cubes.touched<Real>({&at[0], &at[1], &at[2]}, touched);
+        ends.push_back(touched.size());
+    }
+    const auto each_entry = [&](const auto& visit) {
+        std::size_t n = 0;
+        for (std::size_t t = 0; t < ends.size(); ++t) {
+            for (; n < ends[t]; ++n) visit(static_cast<std::int32_t>(t), static_cast<std::size_t>(touched[n]));
+        }
+    };
+    return CellIndex(cubes.dims(), mesh.triangle_count, each_entry);
+}
+
+template <class Real>
+FirstWitnesses find_witnesses(const MeshArrays<Real>& input, const Cubes& cubes, const CellIndex& index,
+                              const MeshArrays<Real>& reference, const Spot& stretch, float limit, int threads) {
+    const Array<std::int32_t> vertices = others(input, reference);
+    Array<std::int32_t> nearest(vertices.size());
+    constexpr std::size_t kAtOnce = 4096;
+    parallel_each(threads, vertices.size(), kAtOnce, [&](std::size_t n) {
+        const std::array<Real, 3> at = reference.place(vertices[n]);
+        nearest[n] = Nearest<Real>(input, cubes.cells(), index, stretch, at).find(limit);
+    });
+    return {vertices, nearest, input.triangle_count};
+}
+
+template CellIndex index_by_cubes(const MeshArrays<float>&, const Cubes&);
+template CellIndex index_by_cubes(const MeshArrays<double>&, const Cubes&);
+template FirstWitnesses find_witnesses(const MeshArrays<float>&, const Cubes&, const CellIndex&,
+                                       const MeshArrays<float>&, const Spot&, float, int);
+template FirstWitnesses find_witnesses(const MeshArrays<double>&, const Cubes&, const CellIndex&,
+                                       const MeshArrays<double>&, const Spot&, float, int);
 
 }  // namespace isocore::simplification

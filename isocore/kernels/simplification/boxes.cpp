@@ -1,0 +1,132 @@
+#include "simplification/boxes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "common/parallel_each.hpp"
+
+namespace isocore::simplification {
+namespace {
+
+template <class Real>
+class BoxFinder {
+  public:
+    BoxFinder(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, const Options& options)
+        : mesh_(mesh), cells_(cells), shift_(shift), options_(options), box_of_(mesh.vertex_count()) {
+        for (std::size_t a = 0; a < 3; ++a) dims_[a] = cells.dims[a] / kBoxCells + 2;
+    }
+
+    std::vector<MeshBox> find() {
+        each_vertex([&](std::size_t v) {
+            box_of_[v] = static_cast<std::uint32_t>(number_of(box_at(mesh_.places[v].at, 0), dims_));
+        });
+        each_vertex([&](std::size_t v) {
+            Vertex& vertex = mesh_.vertices[v];
+            vertex.movable = vertex.may_move() && has_ring_in_box(vertex, box_of_[v]);
+        });
+        std::vector<MeshBox> boxes(dims_[0] * dims_[1] * dims_[2]);
+        for (std::size_t v = 0; v < box_of_.size(); ++v) {
+            if (mesh_.vertices[v].movable) boxes[box_of_[v]].vertices.push_back(static_cast<std::int32_t>(v));
+        }
+        place_triangles(boxes);
+        find_cells(boxes);
+        std::erase_if(boxes, [](const MeshBox& box) { return box.vertices.empty(); });
+        // So that no thread is left with a long one at the end.
+        std::stable_sort(boxes.begin(), boxes.end(), [](const MeshBox& one, const MeshBox& other) {
+            return one.vertices.size() > other.vertices.size();
+        });
+        return boxes;
+    }
+
+  private:
+    // visit(vertex) of all, by all threads.
+    template <class Visit>
+    void each_vertex(const Visit& visit) const {
+        constexpr std::size_t kAtOnce = 16384;
+        parallel_each(options_.threads, mesh_.vertex_count(), kAtOnce, visit);
+    }
+
+    // The box of a place that is moved by a step along each axis.
+    Cell box_at(const std::array<Real, 3>& place, double step) const {
+        Cell out;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double at = static_cast<double>(place[a]) + step;
+            out[a] = (cells_.clamped(cells_.in_cells(at, a), a) + shift_[a]) / kBoxCells;
+        }
+        return out;
+    }
+
+    bool has_ring_in_box(const Vertex& vertex, std::uint32_t box) const {
+        return std::all_of(vertex.ring, vertex.ring + vertex.count, [&](std::int32_t t) {
+            const auto& corners = mesh_.triangles[static_cast<std::size_t>(t)].corners;
+            return std::all_of(corners.begin(), corners.end(),
+                               [&](std::int32_t corner) { return box_of_[static_cast<std::size_t>(corner)] == box; });
+        });
+    }
+
+    void place_triangles(std::vector<MeshBox>& boxes) const {
+        for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+            const Triangle& triangle = mesh_.triangles[t];
+            if (triangle.is_gone()) continue;
+            Cell low, high;
+            find_boxes_of(triangle, low, high);
+            for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+                for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                    for (std::int32_t i = low[0]; i <= high[0]; ++i) {
+                        MeshBox& box = boxes[number_of({i, j, k}, dims_)];
+                        if (!box.vertices.empty()) box.triangles.push_back(static_cast<std::int32_t>(t));
+                    }
+                }
+            }
+        }
+    }
+
+    // Those from `low` to `high`. Where writing moves vertices, those of the box may meet the triangle outside of it.
+    void find_boxes_of(const Triangle& triangle, Cell& low, Cell& high) const {
+        const double moved = 2 * options_.rounding;
+        for (std::size_t n = 0; n < 3; ++n) {
+            const auto& place = mesh_.places[static_cast<std::size_t>(triangle.corners[n])].at;
+            const Cell from = box_at(place, -moved), to = box_at(place, moved);
+            for (std::size_t a = 0; a < 3; ++a) {
+                low[a] = n == 0 ? from[a] : std::min(low[a], from[a]);
+                high[a] = n == 0 ? to[a] : std::max(high[a], to[a]);
+            }
+        }
+    }
+
+    void find_cells(std::vector<MeshBox>& boxes) const {
+        Cell at;
+        for (at[2] = 0; at[2] < static_cast<std::int32_t>(dims_[2]); ++at[2]) {
+            for (at[1] = 0; at[1] < static_cast<std::int32_t>(dims_[1]); ++at[1]) {
+                for (at[0] = 0; at[0] < static_cast<std::int32_t>(dims_[0]); ++at[0]) {
+                    MeshBox& box = boxes[number_of(at, dims_)];
+                    for (std::size_t a = 0; a < 3; ++a) {
+                        const std::int32_t begin = at[a] * kBoxCells - shift_[a];
+                        box.low[a] = std::max(begin, 0);
+                        box.high[a] = std::min(begin + kBoxCells, static_cast<std::int32_t>(cells_.dims[a])) - 1;
+                    }
+                }
+            }
+        }
+    }
+
+    Mesh<Real>& mesh_;
+    const Cells& cells_;
+    const Cell& shift_;
+    const Options& options_;
+    std::array<std::size_t, 3> dims_;    // in boxes
+    std::vector<std::uint32_t> box_of_;  // of each vertex
+};
+
+}  // namespace
+
+template <class Real>
+std::vector<MeshBox> find_boxes(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, const Options& options) {
+    return BoxFinder<Real>(mesh, cells, shift, options).find();
+}
+
+template std::vector<MeshBox> find_boxes(Mesh<float>&, const Cells&, const Cell&, const Options&);
+template std::vector<MeshBox> find_boxes(Mesh<double>&, const Cells&, const Cell&, const Options&);
+
+}  // namespace isocore::simplification
