@@ -167,15 +167,16 @@ Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& refer
     std::vector<Remains> parts;
     Tally tally;
     if (input.is_same(reference.mesh())) {
-        const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0};
+        // A triangle of the reference that ends where a cell begins is entered in the one before.
+        const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0, 1};
         tally = contract_boxes<Real>(whole, nullptr, reference, limit, options, parts);
     } else {
         const Cubes cubes(reference.cells(), options.rounding);
-        const CellIndex index = index_by_cubes(input, cubes);
-        const FirstWitnesses witnesses =
-            find_witnesses(input, cubes, index, reference.mesh(), mesh.stretch(), limit, options.threads);
+        const FirstWitnesses witnesses = find_witnesses(input, cubes, index_by_cubes(input, cubes), reference.mesh(),
+                                                        mesh.stretch(), limit, options.threads);
         return_freed_memory();
-        const IndexedMesh<Real> whole{input, reference.cells(), index, Cubes::kBits};
+        const CellIndex index = index_by_boxes(input, reference.cells());
+        const IndexedMesh<Real> whole{input, reference.cells(), index, kBoxBits, 0};
         tally = contract_boxes(whole, &witnesses, reference, limit, options, parts);
     }
     return_freed_memory();

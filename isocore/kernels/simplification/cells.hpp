@@ -14,7 +14,8 @@ namespace isocore::simplification {
 
 using Cell = std::array<std::int32_t, 3>;
 
-inline constexpr std::int32_t kBoxCells = 32;  // along each axis of a box, the unit of parallel work
+inline constexpr int kBoxBits = 5;
+inline constexpr std::int32_t kBoxCells = 1 << kBoxBits;  // along each axis of a box, the unit of parallel work
 
 // Of a cell among so many along each axis: row by row, layer by layer.
 inline std::size_t number_of(const Cell& cell, const std::array<std::size_t, 3>& dims) {

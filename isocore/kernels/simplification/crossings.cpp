@@ -92,22 +92,26 @@ void Crossings<Real>::find_triangles(const Star& star) {
     for (std::size_t n = 0; n < star.count; ++n) {
         if (star.triangles[n] != kNone) seen_triangles_.add(star.triangles[n]);
     }
-    triangles_.clear();
+    std::size_t count = 0;
     for (const std::int32_t cube : cubes_) grid_.fetch(cube);
     for (const std::int32_t cube : cubes_) {
         if (!seen_cubes_.add(cube)) continue;
-        grid_.each_in(cube, [&](std::int32_t triangle) {
-            if (!seen_triangles_.add(triangle)) return;
-            triangles_.push_back(triangle);
-            ISOCORE_PREFETCH(mesh_.triangles.data() + triangle);
+        grid_.each_in(cube, [&](const std::array<std::int32_t, TriangleGrid::kAtOnce>& some) {
+            if (count + some.size() > triangles_.size()) triangles_.resize(2 * count + some.size());
+            for (const std::int32_t triangle : some) {  // without branches, which would often be mispredicted
+                triangles_[count] = triangle;
+                count += static_cast<std::size_t>(seen_triangles_.add(triangle));
+            }
         });
     }
+    const std::span<const std::int32_t> found = std::span(triangles_).first(triangle_count_ = count);
+    for (const std::int32_t triangle : found) ISOCORE_PREFETCH(mesh_.triangles.data() + triangle);
     for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
-    for (const std::int32_t triangle : triangles_) seen_triangles_.forget_near(triangle);
+    for (const std::int32_t triangle : found) seen_triangles_.forget_near(triangle);
     for (std::size_t n = 0; n < star.count; ++n) {
         if (star.triangles[n] != kNone) seen_triangles_.forget_near(star.triangles[n]);
     }
-    for (const std::int32_t triangle : triangles_) {
+    for (const std::int32_t triangle : found) {
         for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)
             ISOCORE_PREFETCH(mesh_.places.data() + corner);
     }
@@ -134,9 +138,9 @@ template <class Real>
 void Crossings<Real>::take_triangles(const Star& star) {
     const auto& origin = mesh_.places[static_cast<std::size_t>(star.centre)].at;
     const bool has_others = star.vanishing() == 1;  // whose triangles are the star's own
-    near_.make_room(triangles_.size());
+    near_.make_room(triangle_count_);
     std::size_t count = 0;
-    for (const std::int32_t triangle : triangles_) {
+    for (const std::int32_t triangle : std::span(triangles_).first(triangle_count_)) {
         const auto& corners = mesh_.triangles[static_cast<std::size_t>(triangle)].corners;
         if (has_others && std::find(corners.begin(), corners.end(), star.centre) != corners.end()) continue;
         for (std::size_t c = 0; c < 3; ++c) {

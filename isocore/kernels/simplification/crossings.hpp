@@ -16,25 +16,27 @@
 
 namespace isocore::simplification {
 
-// A set of numbers, a bit for each that there may be.
+// A set of numbers, a bit for each that there may be. kNone is always there.
 class NumberSet {
   public:
     // For numbers below `size`. What is in it stays.
-    void make_room(std::size_t size) { words_.resize(std::max(words_.size(), size / 64 + 1)); }
+    void make_room(std::size_t size) { words_.resize(std::max(words_.size(), size / 64 + 2)); }
 
     // False if it is there already.
     bool add(std::int32_t number) {
-        std::uint64_t& word = words_[static_cast<std::size_t>(number) / 64];
-        const std::uint64_t bit = std::uint64_t{1} << number % 64;
+        std::uint64_t& word = words_[word_of(number)];
+        const std::uint64_t bit = std::uint64_t{1} << (static_cast<std::uint32_t>(number) % 64);
         const bool is_new = (word & bit) == 0;
         word |= bit;
         return is_new;
     }
     // Takes it out, and perhaps others.
-    void forget_near(std::int32_t number) { words_[static_cast<std::size_t>(number) / 64] = 0; }
+    void forget_near(std::int32_t number) { words_[word_of(number)] = 0; }
 
   private:
-    std::vector<std::uint64_t> words_;
+    static std::size_t word_of(std::int32_t number) { return (static_cast<std::uint32_t>(number) + 64) / 64; }
+
+    std::vector<std::uint64_t> words_{~std::uint64_t{0}};  // the first is that of kNone
 };
 
 template <class Real>
@@ -107,6 +109,7 @@ class Crossings {
     float rounding_;
     NumberSet seen_cubes_, seen_triangles_;
     std::vector<std::int32_t> cubes_, triangles_;
+    std::size_t triangle_count_ = 0;  // in triangles_
     Candidates near_, candidates_;
     Eight eight_;
     std::array<std::size_t, Ring::kRoom> starts_{};  // in cubes_, by face

@@ -13,20 +13,38 @@ Cubes::Cubes(const Cells& cells, double rounding) : cells_(cells), rounding_(rou
 
 template <class Real>
 void Cubes::touched(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const {
+    Cell low{}, high{};
+    int axes = 0;  // along which it is in several cubes
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto& [one, two, three] = corners;
+        const auto cube = [&](Real place, double moved) {
+            return cells_.clamped(cells_.in_cells(static_cast<double>(place), a) + moved, a) >> kBits;
+        };
+        low[a] = cube(std::min({(*one)[a], (*two)[a], (*three)[a]}), -rounding_);
+        high[a] = cube(std::max({(*one)[a], (*two)[a], (*three)[a]}), rounding_);
+        axes += low[a] < high[a] ? 1 : 0;
+    }
+    if (axes > 1) return touched_by_plane(corners, low, high, out);
+    for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+            for (std::int32_t i = low[0]; i <= high[0]; ++i) out.push_back(number({i, j, k}));
+        }
+    }
+}
+
+// Those from `low` to `high` that the triangle's plane passes through.
+template <class Real>
+void Cubes::touched_by_plane(std::array<const std::array<Real, 3>*, 3> corners, const Cell& low, const Cell& high,
+                             std::vector<std::int32_t>& out) const {
     // Rounding depends on which corner is the first: always the same one, or a triangle might be left in a cube.
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     std::array<std::array<float, 3>, 3> at;  // corners, in cubes from the low one
-    Cell low{}, high{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        std::array<double, 3> in_cells;
-        for (std::size_t n = 0; n < 3; ++n) in_cells[n] = cells_.in_cells(static_cast<double>((*corners[n])[a]), a);
-        const auto cube = [&](double place) { return cells_.clamped(place, a) >> kBits; };
-        low[a] = cube(std::min({in_cells[0], in_cells[1], in_cells[2]}) - rounding_);
-        high[a] = cube(std::max({in_cells[0], in_cells[1], in_cells[2]}) + rounding_);
-        for (std::size_t n = 0; n < 3; ++n)
-            at[n][a] = static_cast<float>(in_cells[n] / (1 << kBits) - static_cast<double>(low[a]));
+    for (std::size_t n = 0; n < 3; ++n) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double in_cells = cells_.in_cells(static_cast<double>((*corners[n])[a]), a);
+            at[n][a] = static_cast<float>(in_cells / (1 << kBits) - static_cast<double>(low[a]));
+        }
     }
-    if (low == high) return out.push_back(number(low));
     const Spot one = minus(at[1], at[0]), other = minus(at[2], at[0]), normal = cross(one, other);
     constexpr float kHalf = 0.5f + 1e-3f;  // of a cube, with some room for rounding
     float reach = kHalf * sum_of_sizes(normal);

@@ -28,6 +28,10 @@ class Cubes {
     void touched(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const;
 
   private:
+    template <class Real>
+    void touched_by_plane(std::array<const std::array<Real, 3>*, 3> corners, const Cell& low, const Cell& high,
+                          std::vector<std::int32_t>& out) const;
+
     Cells cells_;
     double rounding_;                  // in cells
     std::array<std::size_t, 3> dims_;  // in cubes

@@ -2,10 +2,33 @@
 
 #include <algorithm>
 #include <bit>
+#include <functional>
 
 #include "simplification/morton.hpp"
 
 namespace isocore::simplification {
+
+template <class Real>
+CellIndex index_by_boxes(const MeshArrays<Real>& mesh, const Cells& cells) {
+    std::array<std::size_t, 3> dims;
+    for (std::size_t a = 0; a < 3; ++a) dims[a] = ((cells.dims[a] - 1) >> kBoxBits) + 1;
+    Array<std::uint32_t> box_of(mesh.vertex_count);
+    for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
+        Cell box = cells.at(mesh.vertices + 3 * v);
+        for (std::int32_t& at : box) at >>= kBoxBits;
+        box_of[v] = static_cast<std::uint32_t>(number_of(box, dims));
+    }
+    const auto each_entry = [&](const auto& visit) {
+        for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
+            const auto box = [&](std::size_t n) { return box_of[static_cast<std::size_t>(mesh.triangles[3 * t + n])]; };
+            const std::uint32_t a = box(0), b = box(1), c = box(2);
+            visit(static_cast<std::int32_t>(t), a);
+            if (b != a) visit(static_cast<std::int32_t>(t), b);
+            if (c != a && c != b) visit(static_cast<std::int32_t>(t), c);
+        }
+    };
+    return CellIndex(dims, mesh.triangle_count, each_entry);
+}
 
 template <class Real>
 void PartFinder<Real>::find(const Cell& low, const Cell& high, Part& out) {
@@ -39,7 +62,8 @@ void PartFinder<Real>::find_candidates(const Cell& low, const Cell& high) {
     whole_.each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
         for (std::uint32_t n = first; n < end; ++n) candidates_.push_back(whole_.index.entry(n));
     });
-    if (whole_.index.is_in_order()) return;
+    const auto falls = std::adjacent_find(candidates_.begin(), candidates_.end(), std::greater_equal<>());
+    if (falls == candidates_.end()) return;
     std::sort(candidates_.begin(), candidates_.end());
     candidates_.erase(std::unique(candidates_.begin(), candidates_.end()), candidates_.end());
 }
@@ -101,6 +125,8 @@ void PartFinder<Real>::sort_triangles(Part& out) {
     out.triangles.swap(candidates_);
 }
 
+template CellIndex index_by_boxes(const MeshArrays<float>&, const Cells&);
+template CellIndex index_by_boxes(const MeshArrays<double>&, const Cells&);
 template class PartFinder<float>;
 template class PartFinder<double>;
 

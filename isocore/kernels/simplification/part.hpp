@@ -13,27 +13,32 @@
 
 namespace isocore::simplification {
 
-// A mesh, its triangles by cell, and the cells that boxes of it are made of; those of the index are this power of two
-// of them wide.
+// A mesh, and the cells that boxes of it are made of. Its triangles are found by cells of the index, which are this
+// power of two of those cells wide: by each that one of their corners lies in, or by one that is so many before it at
+// most.
 template <class Real>
 struct IndexedMesh {
     const MeshArrays<Real>& mesh;
     const Cells& cells;
     const CellIndex& index;
     int bits;
+    std::int32_t before;
 
-    // visit(first, end) of runs of the index's entries: those of all triangles that touch a vertex in the cells from
-    // `low` to `high`, both included, and of some others.
+    // visit(first, end) of runs of the index's entries: of all triangles with a corner in the cells from `low` to
+    // `high`, both included, and perhaps of others.
     template <class Visit>
     void each_run_between(Cell low, Cell high, const Visit& visit) const {
         for (std::size_t a = 0; a < 3; ++a) {
-            low[a] =
-                std::max((low[a] >> bits) - 1, 0);  // a triangle that ends where a cell begins may be in the one before
+            low[a] = std::max((low[a] >> bits) - before, 0);
             high[a] >>= bits;
         }
         index.each_run_between(low, high, visit);
     }
 };
+
+// The triangles of a mesh by the boxes that their corners lie in.
+template <class Real>
+CellIndex index_by_boxes(const MeshArrays<Real>& mesh, const Cells& cells);
 
 // Numbered as they would be if the whole mesh were: of two vertices or triangles, the same one comes first.
 struct Part {

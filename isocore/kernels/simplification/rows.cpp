@@ -22,14 +22,22 @@ bool Rows::cover_all(const Cell& low, const Cell& high) const {
     return true;
 }
 
+// For all triangles in the box, whether they are asked for or not: room that stays empty takes no memory.
+void Rows::make_room(const Reference<float>& reference) {
+    std::size_t all = 0;
+    reference.index().each_run_between(low_, high_,
+                                       [&](std::uint32_t first, std::uint32_t end) { all += end - first; });
+    if (size_ == 0) numbers_.clear();  // nothing to be kept
+    numbers_.resize((all + 2 * kLanes) * kColumns);
+}
+
 void Rows::copy(const Reference<float>& reference, std::int32_t j, std::int32_t k, Row& row) {
     const auto cells = reference.index().occupied({low_[0], j, k}, high_[0] - low_[0] + 1);
     row = {cells.bits, starts_.size()};
     const std::uint32_t first = cells.starts[0], end = cells.starts[std::popcount(cells.bits)];
     for (int n = 0; n <= std::popcount(cells.bits); ++n)
         starts_.push_back(static_cast<std::uint32_t>(size_) + cells.starts[n] - first);
-    const std::size_t room = (size_ + (end - first) + 2 * kLanes) * kColumns;
-    if (numbers_.size() < room) numbers_.resize(2 * room);
+    if (numbers_.size() < (size_ + (end - first) + 2 * kLanes) * kColumns) make_room(reference);
     constexpr std::uint32_t kAhead = 6;
     for (std::uint32_t n = first; n < end; ++n, ++size_) {
         const auto triangle = static_cast<std::int32_t>(n);

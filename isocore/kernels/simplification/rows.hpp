@@ -56,6 +56,7 @@ class Rows {
         return row;
     }
     void copy(const Reference<float>& reference, std::int32_t j, std::int32_t k, Row& row);
+    void make_room(const Reference<float>& reference);
 
     Cell low_{0, 0, 0}, high_{-1, -1, -1};
     std::vector<Row> rows_;

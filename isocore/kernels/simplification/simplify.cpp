@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "common/large_pages.hpp"
@@ -155,12 +156,14 @@ class Simplification {
     void run(int phase) {
         Cell shift = kShifts[static_cast<std::size_t>(phase)];
         for (std::int32_t& quarters : shift) quarters *= kBoxCells / 4;
-        const std::vector<MeshBox> boxes = find_boxes(mesh_, cells_, shift, options_);
+        std::vector<MeshBox> boxes = find_boxes(mesh_, cells_, shift, options_);
+        return_freed_memory();
         std::atomic<std::size_t> next{0};
         parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
             for (std::size_t n = next++; n < boxes.size(); n = next++) {
-                enter_box(boxes[n], phase, *workers_[worker]);
-                sweep(boxes[n].vertices, mesh_, workers_[worker]->contraction, costs_,
+                const MeshBox box = std::exchange(boxes[n], {});  // its memory is given back
+                enter_box(box, phase, *workers_[worker]);
+                sweep(box.vertices, mesh_, workers_[worker]->contraction, costs_,
                       std::numeric_limits<std::size_t>::max());
             }
         });
@@ -212,6 +215,7 @@ template <class Real>
 Simplified<Real> simplify(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, const Options& options) {
     if (input.triangle_count == 0) return {};
     check(input);
+    return_freed_memory();
     Simplification<Real> simplification(input, reference, options);
     if (options.most_triangles > 0) {
         simplification.run_to_count();

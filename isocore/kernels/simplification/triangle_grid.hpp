@@ -35,14 +35,12 @@ class TriangleGrid {
     // Takes a triangle from the cubes that it touched to those that it touches now, both as cubes_of() found them.
     void move(std::int32_t triangle, std::span<const std::int32_t> from, std::span<const std::int32_t> to);
 
-    // visit(triangle) of each triangle of a cube.
+    // visit(triangles) of some triangles of a cube at a time, until all were there; kNone may follow the last.
+    static constexpr std::size_t kAtOnce = 7;
     template <class Visit>
     void each_in(std::int32_t cube, const Visit& visit) const {
-        for (std::int32_t b = first_[static_cast<std::size_t>(cube)]; b != kNone; b = block(b).next) {
-            for (const std::int32_t triangle : block(b).triangles) {
-                if (triangle != kNone) visit(triangle);
-            }
-        }
+        for (std::int32_t b = first_[static_cast<std::size_t>(cube)]; b != kNone; b = block(b).next)
+            visit(block(b).triangles);
     }
     // Asks for a cube's list ahead of its use.
     void fetch(std::int32_t cube) const {
@@ -53,7 +51,7 @@ class TriangleGrid {
   private:
     // A part of a list. The first of a list may have room left, at its end; the others are full.
     struct Block {
-        std::array<std::int32_t, 7> triangles;
+        std::array<std::int32_t, kAtOnce> triangles;
         std::int32_t next;
     };
     static constexpr int kChunkBits = 10;
