@@ -65,18 +65,17 @@ void simplify(int seed, const Dims& most, double bound, std::size_t most_triangl
     CHECK(found.vertices == again.vertices && found.triangles == again.triangles);
 }
 
-// The first phase makes a mesh for each box; that of a reference with triangles of its own, one mesh of all.
-void apart_as_together(const MeshArrays<float>& mesh) {
-    const std::vector<std::int32_t> copy(mesh.triangles, mesh.triangles + 3 * mesh.triangle_count);
-    MeshArrays<float> reference = mesh;
-    reference.triangles = copy.data();
+// The first phase makes a mesh for each box, or one mesh of all.
+void apart_as_together(const MeshArrays<float>& mesh, const MeshArrays<float>& reference) {
     simplification::Options options;
     options.max_error = 0.5;
     options.other = {1, 2, 3};
+    options.together = true;
     const Simplified<float> together = simplification::simplify(mesh, reference, options);
+    options.together = false;
     for (const int threads : {1, 3}) {
         options.threads = threads;
-        const Simplified<float> apart = simplification::simplify(mesh, mesh, options);
+        const Simplified<float> apart = simplification::simplify(mesh, reference, options);
         CHECK(apart.vertices == together.vertices && apart.triangles == together.triangles);
         CHECK(apart.kept == together.kept && apart.left == together.left);
         CHECK(apart.facts.collapses == together.facts.collapses && apart.facts.collapses > 0);
@@ -95,8 +94,15 @@ void apart_as_together(const MeshArrays<float>& mesh) {
 void apart_as_together() {
     const Volume volume = volume_of(1, {75, 70, 9});
     const auto marched = marching_cubes::march<float, float>({volume.samples.data(), volume.dims}, {});
+    const MeshArrays<float> fine{marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(),
+                                 marched.triangles.size() / 3};
+    apart_as_together(fine, fine);
+    // A coarser mesh: the reference's other vertices are witnesses of its triangles.
+    simplification::Options close;
+    close.max_error = 0.1;
+    const Simplified<float> fewer = simplification::simplify(fine, fine, close);
     apart_as_together(
-        {marched.vertices.data(), marched.vertices.size() / 3, marched.triangles.data(), marched.triangles.size() / 3});
+        {fewer.vertices.data(), fewer.vertices.size() / 3, fewer.triangles.data(), fewer.triangles.size() / 3}, fine);
     std::vector<std::uint8_t> labels;
     for (const float sample : volume.samples)
         labels.push_back(sample < -0.5f ? 0 : sample < 0.3f ? 1 : sample < 1 ? 2 : 3);
@@ -104,8 +110,9 @@ void apart_as_together() {
     const std::vector<std::uint32_t> ranks{0, 1, 2, 3};
     auto mesh = labels::extract<std::uint8_t>({labels.data(), volume.dims}, {values, ranks}, 1);
     const auto sheets = labels::take_sheets(mesh);
-    apart_as_together({mesh.vertices.data(), mesh.vertices.size() / 3, mesh.triangles.data(), mesh.triangles.size() / 3,
-                       sheets.of_triangles.data(), sheets.pairs.size() / 2});
+    const MeshArrays<float> shared{mesh.vertices.data(),      mesh.vertices.size() / 3,   mesh.triangles.data(),
+                                   mesh.triangles.size() / 3, sheets.of_triangles.data(), sheets.pairs.size() / 2};
+    apart_as_together(shared, shared);
 }
 
 // A patch is counted in: each triangle of the reference is there once, in however many cells it lies.
@@ -117,7 +124,7 @@ void gather_large_triangles() {
     const simplification::Reference<float> reference(arrays, cells);
     simplification::Mesh<float> mesh({1, 1, 1}, 0);
     mesh.take_all(arrays, cells, 1);
-    CHECK(reference.repeats());
+    CHECK(reference.index().repeats());
     simplification::Rows rows;
     simplification::Patch patch;
     patch.gather(reference, rows, mesh, {0, 0, 0}, {{-1, -1, -1}, {6, 6, 6}}, 0);

@@ -25,11 +25,11 @@ class Cubes {
     // Appends the cubes that a triangle touches, by number, in ascending order, and perhaps a few that it nearly does.
     // The same for the same places. What lies outside of the cells counts to the nearest.
     template <class Real>
-    void touched(std::array<const std::array<Real, 3>*, 3> corners, std::vector<std::int32_t>& out) const;
+    void touched(const std::array<const std::array<Real, 3>*, 3>& corners, std::vector<std::int32_t>& out) const;
 
   private:
     template <class Real>
-    void touched_by_plane(std::array<const std::array<Real, 3>*, 3> corners, const Cell& low, const Cell& high,
+    void touched_by_plane(const std::array<const std::array<Real, 3>*, 3>& corners, const Cell& low, const Cell& high,
                           std::vector<std::int32_t>& out) const;
 
     Cells cells_;

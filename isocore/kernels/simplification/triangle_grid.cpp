@@ -5,6 +5,25 @@
 #include <stdexcept>
 
 namespace isocore::simplification {
+namespace {
+
+using Some = std::array<std::int32_t, TriangleGrid::kAtOnce>;
+
+// Both without branches, which would often be mispredicted. How many there are:
+std::size_t count_in(const Some& triangles) {
+    std::size_t count = 0;
+    for (const std::int32_t triangle : triangles) count += static_cast<std::size_t>(triangle != kNone);
+    return count;
+}
+
+// Where one is, or their number.
+std::size_t index_in(const Some& triangles, std::int32_t wanted) {
+    std::size_t index = triangles.size();
+    for (std::size_t n = triangles.size(); n-- > 0;) index = triangles[n] == wanted ? n : index;
+    return index;
+}
+
+}  // namespace
 
 TriangleGrid::TriangleGrid(double rounding) : rounding_(rounding), cubes_({}, rounding) {}
 
@@ -76,21 +95,20 @@ void TriangleGrid::enter_in(std::int32_t triangle, std::int32_t& first) {
         first = taken;
     }
     auto& triangles = block(first).triangles;
-    *std::find(triangles.begin(), triangles.end(), kNone) = triangle;
+    triangles[count_in(triangles)] = triangle;
 }
 
 // The last triangle of the first block takes the place of the one that goes.
 void TriangleGrid::remove_from(std::int32_t triangle, std::int32_t& first) {
     for (std::int32_t b = first; b != kNone; b = block(b).next) {
         auto& triangles = block(b).triangles;
-        const auto found = std::find(triangles.begin(), triangles.end(), triangle);
-        if (found == triangles.end()) continue;
+        const std::size_t found = index_in(triangles, triangle);
+        if (found == triangles.size()) continue;
         Block& head = block(first);
-        auto last = std::find(head.triangles.begin(), head.triangles.end(), kNone);
-        --last;
-        *found = *last;
-        *last = kNone;
-        if (head.triangles.front() == kNone) {
+        const std::size_t last = count_in(head.triangles) - 1;
+        triangles[found] = head.triangles[last];
+        head.triangles[last] = kNone;
+        if (last == 0) {
             const std::int32_t emptied = first;
             first = head.next;
             head.next = spare_;
