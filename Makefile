@@ -71,7 +71,7 @@ kernels: $(TOOLS)  ## the kernels' own tests, under sanitizers
 
 bench: $(BUILT)  ## time us against the peers, in one process; and the memory
 	$(BIN)/python -m pip install -q ".[bench]" --no-build-isolation --no-deps && $(BIN)/python -m pip install -q vtk scikit-image nilearn
-	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py && $(BIN)/python tests/bench/memory.py
+	$(BIN)/python tests/bench/run.py && $(BIN)/python tests/bench/measuring.py && $(BIN)/python tests/bench/memory.py && $(BIN)/python tests/bench/simplification_memory.py
 
 fuzz: $(READY)  ## damaged inputs for hours: SECONDS=3600 or RUNS=, JOBS=1, SEED=1, TARGETS=; build/fuzz has what failed
 	$(BIN)/python tests/fuzz/run.py $(if $(RUNS),--runs $(RUNS),--seconds $(or $(SECONDS),3600)) --jobs $(or $(JOBS),1) \

@@ -4,14 +4,14 @@
 
 What is measured is all that leads from the samples to the surface within half a voxel both ways: climbing, marching
 cubes for the reference, simplification with its proofs, placement. Each figure comes from a process of its own, which
-has extracted a small surface before. Marching cubes' surface is taken off with 12 bytes a vertex and 12 a triangle. Exit
-code 1 where a vertex takes more than it must.
+has extracted a small surface before. Marching cubes' surface is taken off with 12 bytes a vertex and 12 a triangle.
+Exit code 1 where a vertex of a scan takes more than it must. Of the smooth volumes that the bench makes itself,
+climbing keeps so few vertices that what counts is the index of marching cubes' surface.
 """
 
 from __future__ import annotations
 
 import argparse
-import itertools
 import multiprocessing
 import sys
 import tempfile
@@ -26,6 +26,7 @@ from isocore.backends import Options, prepare
 from isocore.volume import Volume
 
 MUST = 200.0
+SCANS = ("MNI T1", "t1_crop", "bone")
 BOUND = "0.5"
 
 
@@ -75,7 +76,7 @@ def main() -> None:
                 each = (peak - surface) / vertices
                 row = f"| {name} | {threads} | {vertices:,} | {surface / 1e6:.1f} | {peak / 1e6:.1f} | {each:.0f} |"
                 print(row, flush=True)
-                if each > asked.must:
+                if name in SCANS and each > asked.must:
                     missed.append(f"{name}, {threads} threads: {each:.0f} bytes a vertex, must be {asked.must:.0f}")
     if missed:
         sys.exit("\n".join(missed))
