@@ -56,7 +56,7 @@ class Measuring {
         if (triangle.witness == kNone) return sum;
         const auto& origin = mesh_.places[static_cast<std::size_t>(triangle.corners[0])].at;
         const auto place = [&](std::int32_t number) {
-            const auto& at = mesh_.places[static_cast<std::size_t>(number)].at;
+            const auto at = mesh_.place_of(number);
             Spot out;
             for (std::size_t a = 0; a < 3; ++a) out[a] = static_cast<float>(at[a] - origin[a]) * stretch[a];
             return out;
@@ -64,7 +64,7 @@ class Measuring {
         facet_.clear();
         facet_.add({0, 0, 0}, place(triangle.corners[1]), place(triangle.corners[2]));
         facet_.find_frames();
-        for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.places[static_cast<std::size_t>(w)].next) {
+        for (std::int32_t w = triangle.witness; w != kNone; w = mesh_.next(w)) {
             const Spot at = place(w);
             const auto squared = static_cast<double>(facet_.from_points(0, {at[0], at[1], at[2]}).first());
             if (!(squared >= 0)) continue;  // a triangle without an area

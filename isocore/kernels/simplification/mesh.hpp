@@ -24,6 +24,12 @@ struct Place {
     std::int32_t next;  // the next witness of the same triangle, where this is one
 };
 
+// A witness of which no place is kept.
+struct Link {
+    std::int32_t from;  // its number in the input, where those of the reference's vertices follow on the input's
+    std::int32_t next;
+};
+
 struct Triangle {
     std::array<std::int32_t, 3> corners;  // counter-clockwise; kNone once it is gone
     std::int32_t witness;                 // its first witness, or kNone
@@ -123,7 +129,22 @@ class Mesh {
     // What is left, in the order in which it came in.
     void give(const MeshArrays<Real>& input, Simplified<Real>& out) const;
 
-    Array<Place<Real>> places;  // of the vertices, then of the reference's other vertices
+    // What is known of a witness: its place, and which is the next of the same triangle, or kNone.
+    std::array<Real, 3> place_of(std::int32_t witness) const {
+        const auto number = static_cast<std::size_t>(witness);
+        return number < places.size() ? places[number].at : source(links[number - places.size()].from);
+    }
+    std::int32_t next(std::int32_t witness) const {
+        const auto number = static_cast<std::size_t>(witness);
+        return number < places.size() ? places[number].next : links[number - places.size()].next;
+    }
+    void set_next(std::int32_t witness, std::int32_t next) {
+        const auto number = static_cast<std::size_t>(witness);
+        (number < places.size() ? places[number].next : links[number - places.size()].next) = next;
+    }
+
+    Array<Place<Real>> places;  // of the vertices, then of witnesses that are no vertices any more, or never were
+    Array<Link> links;          // of further witnesses: what is left of parts has many
     std::vector<Vertex> vertices;
     std::vector<Quadric*> quadrics;  // of vertices that have been looked at, or could be a target
     Array<Triangle> triangles;
@@ -166,6 +187,11 @@ class Mesh {
   private:
     static constexpr std::size_t kLot = 4096;
 
+    std::array<Real, 3> source(std::int32_t from) const {
+        const auto beyond = from - static_cast<std::int32_t>(input_.vertex_count);
+        return beyond < 0 ? input_.place(from) : reference_.place(beyond);
+    }
+
     friend class Joining<Real>;  // remains.cpp
 
     Array<std::int32_t> number_vertices(const MeshArrays<Real>& input, const Cells& cells);
@@ -183,6 +209,7 @@ class Mesh {
 
     Spot stretch_;
     float rounding_;
+    MeshArrays<Real> input_{}, reference_{};  // where links lead to
     Array<std::int32_t> rings_;
     Array<Quadric> quadrics_;        // of what was left of parts
     std::vector<std::size_t> lots_;  // where each begins, where some triangles of the input are not there

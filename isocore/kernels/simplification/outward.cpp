@@ -14,7 +14,7 @@ void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
     const auto add = [&](std::int32_t number) {
         if (count + kLanes >= numbers_.size()) make_room(2 * count + 16 * kLanes);
         numbers_[count] = number;
-        const Spot at = mesh.relative(mesh.places[static_cast<std::size_t>(number)].at, origin);
+        const Spot at = mesh.relative(mesh.place_of(number), origin);
         for (std::size_t a = 0; a < 3; ++a) places_[a][count] = at[a];
         ++count;
     };
@@ -22,7 +22,7 @@ void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
     for (std::size_t n = 0; n < ring.count; ++n) {
         if (ring.triangles[n] == kNone) continue;
         std::int32_t witness = mesh.triangles[static_cast<std::size_t>(ring.triangles[n])].witness;
-        for (; witness != kNone; witness = mesh.places[static_cast<std::size_t>(witness)].next) add(witness);
+        for (; witness != kNone; witness = mesh.next(witness)) add(witness);
     }
     count_ = count;
     for (auto& axis : places_) Floats(0.0f).store(axis.data() + count);  // lanes past the end are as the centre
@@ -59,7 +59,7 @@ void Witnesses::hand_over(Mesh<Real>& mesh, const Star& star) const {
     for (std::size_t n = count_; n-- > 0;) {
         const std::size_t face = static_cast<std::size_t>(nearest_[n]) + 1;
         Triangle& triangle = mesh.triangles[static_cast<std::size_t>(star.triangles[face])];
-        mesh.places[static_cast<std::size_t>(numbers_[n])].next = triangle.witness;
+        mesh.set_next(numbers_[n], triangle.witness);
         triangle.witness = numbers_[n];
     }
 }

@@ -95,9 +95,8 @@ void Remains::shrink_to_fit() {
 template <class Real>
 class Joining {
   public:
-    Joining(Mesh<Real>& mesh, const MeshArrays<Real>& input, const MeshArrays<Real>& reference,
-            const std::vector<Remains>& parts)
-        : mesh_(mesh), input_(input), reference_(reference), numbers_(input.vertex_count, kNone) {
+    Joining(Mesh<Real>& mesh, const MeshArrays<Real>& input, const std::vector<Remains>& parts)
+        : mesh_(mesh), input_(input), numbers_(input.vertex_count, kNone) {
         std::size_t vertices = 0, faces = 0, rings = 0, quadrics = 0, witnesses = 0, curves = 0;
         for (const Remains& part : parts) {
             vertices += part.vertices.size();
@@ -113,7 +112,8 @@ class Joining {
         mesh.vertices.reserve(vertices);
         mesh.from_vertices.reserve(vertices);
         mesh.quadrics.reserve(vertices);
-        mesh.places.resize(vertices + witnesses);
+        mesh.places.resize(vertices);
+        mesh.links.resize(witnesses);
         mesh.rings_.resize(rings);
         mesh.quadrics_.reserve(quadrics);
         mesh.triangles.reserve(faces);
@@ -122,7 +122,6 @@ class Joining {
         if (input.sheets != nullptr) mesh.sheets_.reserve(faces);
         mesh.on_curves_.reserve(curves);
         mesh.along_.reserve(curves);
-        next_witness_ = vertices;
     }
 
     void add(const Remains& part) {
@@ -189,20 +188,13 @@ class Joining {
         return kNone;
     }
 
-    std::array<Real, 3> place_of(std::int32_t witness) const {
-        const auto beyond = witness - static_cast<std::int32_t>(input_.vertex_count);
-        return beyond < 0 ? input_.place(witness) : reference_.place(beyond);
-    }
-
     // In front of those that a triangle has.
     void add_witnesses(const std::int32_t* from, std::size_t count, Triangle& triangle) {
-        for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t number = next_witness_ + n;
-            mesh_.places[number] = {place_of(from[n]),
-                                    n + 1 == count ? triangle.witness : static_cast<std::int32_t>(number + 1)};
+        for (std::size_t n = count; n-- > 0;) {
+            mesh_.links[next_link_ + n] = {from[n], triangle.witness};
+            triangle.witness = static_cast<std::int32_t>(mesh_.places.size() + next_link_ + n);
         }
-        if (count > 0) triangle.witness = static_cast<std::int32_t>(next_witness_);
-        next_witness_ += count;
+        next_link_ += count;
     }
 
     void add_vertices(const Remains& part) {
@@ -234,17 +226,19 @@ class Joining {
     }
 
     Mesh<Real>& mesh_;
-    const MeshArrays<Real>&input_, &reference_;
+    const MeshArrays<Real>& input_;
     Array<std::int32_t> numbers_;                 // of the whole's vertices, or kNone
     std::vector<std::int32_t> numbers_of_faces_;  // of the part
     std::size_t first_ = 0;                       // vertex of the part
     std::size_t triangles_ = 0;                   // of the input, in the parts before
-    std::size_t next_witness_ = 0, next_in_rings_ = 0;
+    std::size_t next_link_ = 0, next_in_rings_ = 0;
 };
 
 template <class Real>
 void Mesh<Real>::take(const MeshArrays<Real>& input, const MeshArrays<Real>& reference, std::vector<Remains>& parts) {
-    Joining<Real> joining(*this, input, reference, parts);
+    input_ = input;
+    reference_ = reference;
+    Joining<Real> joining(*this, input, parts);
     constexpr std::size_t kAtOnce = 16;
     for (std::size_t n = 0; n < parts.size(); ++n) {
         joining.add(parts[n]);
