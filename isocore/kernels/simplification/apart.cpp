@@ -28,7 +28,6 @@ class Worker {
         : whole_(whole),
           witnesses_(witnesses),
           reference_(reference),
-          finder_(whole),
           mesh_(options.stretch, options.rounding),
           grid_(options.rounding),
           contraction_(mesh_, reference, grid_, limit) {
@@ -36,8 +35,7 @@ class Worker {
     }
 
     Remains contract(const Cell& low, const Cell& high) {
-        finder_.find(low, high, part_);
-        mesh_.take(whole_.mesh, part_);
+        take(low, high);
         // A triangle that lies in several boxes has its witnesses in that in which it is numbered: in none it changes.
         if (witnesses_ != nullptr)
             mesh_.take_witnesses(whole_.mesh, reference_.mesh(), *witnesses_, part_.first_numbered);
@@ -56,6 +54,12 @@ class Worker {
     Tally tally() const { return {contraction_.collapses, contraction_.refused()}; }
 
   private:
+    void take(const Cell& low, const Cell& high) {
+        PartFinder<Real>(whole_).find(low, high, part_);  // which takes as much memory as the mesh, and gives it back
+        mesh_.take(whole_.mesh, part_);
+        part_.forget_lists();
+    }
+
     // Those in the box with all their neighbours.
     void find_movable() {
         movable_.clear();
@@ -78,7 +82,6 @@ class Worker {
     IndexedMesh<Real> whole_;
     const FirstWitnesses* witnesses_;  // none where the mesh is its own reference
     const Reference<Real>& reference_;
-    PartFinder<Real> finder_;
     Part part_;
     Mesh<Real> mesh_;
     TriangleGrid grid_;

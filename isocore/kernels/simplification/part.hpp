@@ -52,6 +52,12 @@ struct Part {
     // numbered in one of all parts.
     std::size_t first_numbered = 0;
 
+    // Once a mesh has them, what says where they begin and end is enough.
+    void forget_lists() {
+        vertices = {};
+        triangles = {};
+        corners = {};
+    }
     bool is_own(std::int32_t vertex) const {
         return static_cast<std::size_t>(vertex) - first_own < end_own - first_own;
     }
