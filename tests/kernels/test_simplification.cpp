@@ -110,8 +110,8 @@ void apart_as_together() {
     const std::vector<std::uint32_t> ranks{0, 1, 2, 3};
     auto mesh = labels::extract<std::uint8_t>({labels.data(), volume.dims}, {values, ranks}, 1);
     const auto sheets = labels::take_sheets(mesh);
-    const MeshArrays<float> shared{mesh.vertices.data(),      mesh.vertices.size() / 3,   mesh.triangles.data(),
-                                   mesh.triangles.size() / 3, sheets.of_triangles.data(), sheets.pairs.size() / 2};
+    const MeshArrays<float> shared{mesh.vertices.data(),      mesh.vertices.size() / 3, mesh.triangles.data(),
+                                   mesh.triangles.size() / 3, &sheets.of_triangles,     sheets.pairs.size() / 2};
     apart_as_together(shared, shared);
 }
 

@@ -16,7 +16,7 @@ void number_triangles(const LabelMesh& mesh, Sheets& sheets) {
     const auto pair_of = [](const Array<std::uint32_t>& sides, std::size_t n) {
         return std::pair{sides[2 * n], sides[2 * n + 1]};
     };
-    sheets.of_triangles.resize(mesh.sides.size() / 2);
+    sheets.of_triangles = NarrowArray(mesh.sides.size() / 2, count);
     sheets.triangles.assign(count, 0);
     std::size_t last = 0;
     for (std::size_t t = 0; t < sheets.of_triangles.size(); ++t) {
@@ -32,7 +32,7 @@ void number_triangles(const LabelMesh& mesh, Sheets& sheets) {
             }
             last = low;
         }
-        sheets.of_triangles[t] = static_cast<std::uint32_t>(last);
+        sheets.of_triangles.set(t, static_cast<std::uint32_t>(last));
         ++sheets.triangles[last];
     }
 }

@@ -5,15 +5,16 @@
 #include <cstdint>
 
 #include "common/array.hpp"
+#include "common/narrow_array.hpp"
 #include "labels/label_mesh.hpp"
 
 namespace isocore::labels {
 
 struct Sheets {
-    Array<std::uint32_t> pairs;         // two ranks each, the higher first, in ascending order
-    Array<std::uint32_t> of_triangles;  // of each triangle: the number of its pair
-    Array<std::uint32_t> vertices;      // of each sheet: how many it has, those on its border included
-    Array<std::uint32_t> triangles;     // of each sheet: how many it has
+    Array<std::uint32_t> pairs;      // two ranks each, the higher first, in ascending order
+    NarrowArray of_triangles;        // of each triangle: the number of its pair
+    Array<std::uint32_t> vertices;   // of each sheet: how many it has, those on its border included
+    Array<std::uint32_t> triangles;  // of each sheet: how many it has
 };
 
 // Takes the sides and the curves from the mesh: a sheet's pair says as much as the sides of its triangles.

@@ -98,9 +98,9 @@ class LabelSurfaces {
             before = triangles();
             sheets = labels::take_sheets(mesh_);
             return_freed_memory();
-            const simplification::MeshArrays<float> arrays{mesh_.vertices.data(),      vertices(),
-                                                           mesh_.triangles.data(),     before,
-                                                           sheets.of_triangles.data(), sheets.pairs.size() / 2};
+            const simplification::MeshArrays<float> arrays{mesh_.vertices.data(),  vertices(),
+                                                           mesh_.triangles.data(), before,
+                                                           &sheets.of_triangles,   sheets.pairs.size() / 2};
             simplification::Simplified<float> fewer = simplification::simplify(arrays, arrays, options);
             facts = std::move(fewer.facts);
             labels::replace(mesh_, sheets, std::move(fewer.vertices), std::move(fewer.triangles), fewer.kept,

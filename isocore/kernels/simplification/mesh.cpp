@@ -100,7 +100,7 @@ void Mesh<Real>::number_triangles(const MeshArrays<Real>& input, const Array<std
         const auto to = static_cast<std::size_t>(next[lowest(t)]++);
         triangles[to] = {{corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)}, kNone};
         from_triangles[to] = static_cast<std::int32_t>(t);
-        if (input.sheets != nullptr) sheets_[to] = input.sheets[t];
+        if (input.sheets != nullptr) sheets_[to] = (*input.sheets)[t];
     }
 }
 

@@ -68,7 +68,7 @@ void Reference<Real>::find_curves() {
     std::vector<std::uint32_t> sheet_at(mesh_.vertex_count, std::numeric_limits<std::uint32_t>::max());
     for (std::size_t n = 0; n < 3 * mesh_.triangle_count; ++n) {
         const auto v = static_cast<std::size_t>(mesh_.triangles[n]);
-        const std::uint32_t sheet = mesh_.sheets[n / 3];
+        const std::uint32_t sheet = (*mesh_.sheets)[n / 3];
         if (sheet_at[v] == std::numeric_limits<std::uint32_t>::max()) sheet_at[v] = sheet;
         if (sheet_at[v] != sheet) at_border_[v] = 1;
     }

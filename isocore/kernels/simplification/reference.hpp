@@ -31,7 +31,7 @@ class Reference {
     // x, y and z of a vertex.
     const Real* place(std::int32_t vertex) const { return mesh_.vertices + 3 * static_cast<std::size_t>(vertex); }
     bool is_in(std::int32_t triangle, std::uint32_t sheet) const {
-        return mesh_.sheets == nullptr || mesh_.sheets[triangle] == sheet;
+        return mesh_.sheets == nullptr || (*mesh_.sheets)[static_cast<std::size_t>(triangle)] == sheet;
     }
     // Is a side of the triangle on its sheet's border, or could it be?
     bool may_be_at_border(std::int32_t triangle) const {

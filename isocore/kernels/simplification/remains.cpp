@@ -21,7 +21,8 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, const Part& part) {
     for (std::size_t t = 0; t < count; ++t) triangles[t] = {part.corners[t], kNone};
     proved.assign(count, 0.0f);  // as those of the reference
     sheets_.resize(input.sheets == nullptr ? 0 : count);
-    for (std::size_t t = 0; t < sheets_.size(); ++t) sheets_[t] = input.sheets[from_triangles[t]];
+    for (std::size_t t = 0; t < sheets_.size(); ++t)
+        sheets_[t] = (*input.sheets)[static_cast<std::size_t>(from_triangles[t])];
     vertices.assign(vertex_number, {});
     for (std::size_t v = 0; v < vertex_number; ++v)  // those outside have other triangles, too
         vertices[v].odd = !part.is_own(static_cast<std::int32_t>(v));
@@ -164,7 +165,8 @@ class Joining {
                     {{number_of(face.corners[0]), number_of(face.corners[1]), number_of(face.corners[2])}, kNone});
                 mesh_.from_triangles.push_back(face.number);
                 mesh_.proved.push_back(face.proved);
-                if (input_.sheets != nullptr) mesh_.sheets_.push_back(input_.sheets[face.number]);
+                if (input_.sheets != nullptr)
+                    mesh_.sheets_.push_back((*input_.sheets)[static_cast<std::size_t>(face.number)]);
             } else {
                 number = find(face);
             }
@@ -239,7 +241,7 @@ void Mesh<Real>::take(const MeshArrays<Real>& input, const MeshArrays<Real>& ref
     input_ = input;
     reference_ = reference;
     Joining<Real> joining(*this, input, parts);
-    constexpr std::size_t kAtOnce = 16;
+    constexpr std::size_t kAtOnce = 4;
     for (std::size_t n = 0; n < parts.size(); ++n) {
         joining.add(parts[n]);
         parts[n] = {};

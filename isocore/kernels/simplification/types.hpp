@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/array.hpp"
+#include "common/narrow_array.hpp"
 
 namespace isocore::simplification {
 
@@ -83,7 +84,7 @@ struct MeshArrays {
     std::size_t vertex_count;
     const std::int32_t* triangles;
     std::size_t triangle_count;
-    const std::uint32_t* sheets = nullptr;  // of each triangle: the number of its sheet
+    const NarrowArray* sheets = nullptr;  // of each triangle: the number of its sheet
     std::size_t sheet_count = 0;
     // Where each vertex is written, x, y, z: elsewhere, since it is turned, stretched and rounded. None where it stays.
     const double* written = nullptr;
