@@ -158,6 +158,7 @@ class Propagation {
     void prefetch_points(EdgeKey edge) const {
         for (const int32_t point : {low_point(edge), high_point(edge)}) {
             ISOCORE_PREFETCH(field_.point(point));
+            ISOCORE_PREFETCH(field_.point(point) + 2);
             ISOCORE_PREFETCH(field_.values + point);
             ISOCORE_PREFETCH(index_.points + point);
         }
@@ -184,7 +185,7 @@ class Propagation {
         }
     }
 
-    static constexpr size_t kAhead = 8;  // edges
+    static constexpr size_t kAhead = 24;  // edges
 
     const Field<Value>& field_;
     const IndexView& index_;
