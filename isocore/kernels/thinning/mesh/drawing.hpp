@@ -38,10 +38,9 @@ class Drawing {
 
   private:
     using Pen = std::conditional_t<std::is_same_v<Cell, mesh::Tet>, TetPen<Value>, HexPen<Value>>;
-    static constexpr std::size_t kBatch = 64, kRecordsAhead = 12, kValuesAhead = 6;
+    static constexpr std::size_t kBatch = 64, kRecordsAhead = 12;
 
     struct Batch {
-        std::array<std::uint8_t, kBatch> signs;                          // which corners of every cell are inside
         std::array<EdgeKey, Pen::kMostEdges * kBatch> edges;             // the crossed edges of all cells, cell by cell
         std::array<std::uint32_t, Pen::kMostEdges*(kBatch + 1)> places;  // of these among the lot's edges
     };
@@ -51,11 +50,7 @@ class Drawing {
         EdgeKey* out = batch.edges.data();
         for (std::size_t n = first; n < end; ++n) {
             if (n + kRecordsAhead < walk_.size()) walk_.prefetch_record(cells[n + kRecordsAhead]);
-            if (n + kValuesAhead < walk_.size()) walk_.prefetch_values(cells[n + kValuesAhead]);
-            const std::int32_t* corners = walk_.record(cells[n]);
-            const mesh::Mask signs = walk_.signs(corners);
-            batch.signs[n - first] = static_cast<std::uint8_t>(signs);
-            out += pen_.write_edges(signs, corners, out);
+            out += pen_.write_edges(walk_.signs()[n], walk_.record(cells[n]), out);
         }
         return static_cast<std::size_t>(out - batch.edges.data());
     }
@@ -66,7 +61,7 @@ class Drawing {
         const std::int32_t* cells = walk_.cells();
         for (std::size_t n = first; n < end; ++n) {
             const auto [edges, corners] =
-                pen_.write_triangles(batch.signs[n - first], walk_.record(cells[n]), places, out, lot);
+                pen_.write_triangles(walk_.signs()[n], walk_.record(cells[n]), places, out, lot);
             places += edges;
             out += corners;
         }

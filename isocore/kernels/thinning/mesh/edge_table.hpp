@@ -33,10 +33,11 @@ class EdgeTable {
     }
 
     // Writes the place of each edge among those seen so far, where a new edge gets the next one. Slots count places
-    // from 1, and an empty slot leads to the edge that is searched for: so a search ends on one condition.
+    // from 1, and an empty slot leads to the edge that is searched for: so a search ends on one condition. Whether an
+    // edge is new is unpredictable, so there is no branch on it: every edge is written as if it were.
     void place(const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
         while (2 * (count_ + size) > slots_.size()) grow();
-        edges_.resize(std::max(edges_.size(), count_ + size + 1));
+        edges_.resize(std::max(edges_.size(), count_ + size + 2));
         EdgeKey *const seen = edges_.data(), &wanted = seen[0];
         std::uint32_t* const slots = slots_.data();
         std::uint32_t count = count_;
@@ -45,11 +46,11 @@ class EdgeTable {
             const EdgeKey edge = wanted = edges[n];
             std::size_t slot = slot_of.first(edge);
             while (seen[slots[slot]] != edge) slot = slot_of.next(slot);
-            if (slots[slot] == 0) {
-                slots[slot] = ++count;
-                seen[count] = edge;
-            }
-            out[n] = slots[slot] - 1;
+            const std::uint32_t known = slots[slot], fresh = known == 0, place = known | ((count + 1) & -fresh);
+            slots[slot] = place;
+            seen[count + 1] = edge;
+            count += fresh;
+            out[n] = place - 1;
         }
         count_ = count;
     }

@@ -217,11 +217,10 @@ Visited walk(const Field<Value>& field, const IndexView& index, double isovalue,
     const auto search = [&](auto&& part) {
         part.run(alone);
         visited.seeds += part.seeds();
+        return Array<int32_t>(part.cells(), part.cells() + part.size());
     };
-    search(Walk<Tet, Value>(field, index.tets, isovalue, scratch.tets));
-    search(Walk<Hex, Value>(field, index.hexes, isovalue, scratch.hexes));
-    visited.tets = scratch.tets.cells;
-    visited.hexes = scratch.hexes.cells;
+    visited.tets = search(Walk<Tet, Value>(field, index.tets, isovalue, scratch.tets));
+    visited.hexes = search(Walk<Hex, Value>(field, index.hexes, isovalue, scratch.hexes));
     return visited;
 }
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,13 +12,16 @@
 
 #include "common/array.hpp"
 #include "thinning/mesh/edge_table.hpp"
+#include "thinning/mesh/marks.hpp"
 
 namespace isocore::thinning {
 
 // What the walk leaves of one kind of cells.
 struct WalkScratch {
-    std::vector<std::atomic<std::uint64_t>> visited;  // a bit per cell; all 0 between two walks
-    Array<std::int32_t> cells;                        // that were visited, ascending
+    Marks marks;                              // all 0 between two walks
+    std::vector<Array<std::int32_t>> queues;  // of every thread
+    Array<std::int32_t> cells;                // that were visited, ascending, and room for more
+    Array<std::uint8_t> signs;                // which corners of each are inside
 };
 
 // An edge whose vertex is another lot's.

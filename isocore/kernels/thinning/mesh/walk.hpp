@@ -1,12 +1,12 @@
 // walk.hpp - The walk itself, on several threads: which cells the isosurface meets.
 //
-// Each thread walks breadth first through cells of its own, and a bit per cell says who came first. So the order of the
-// walk is left open, but not what it finds: a set of cells, which the bits hold in the order of their numbers.
+// Each thread walks breadth first through cells of its own, and a mark per cell says whether somebody has found it. Two
+// threads may find a cell at once; then both take its step, which is the same. So the order of the walk is left open,
+// but not what it finds: a set of cells and their signs, which the marks hold in the order of the cells' numbers.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -24,144 +24,144 @@
 
 namespace isocore::thinning {
 
+// The cells as an isovalue meets them. Loops that write marks copy it: its pointers stay in registers then.
 template <class Cell, class Value>
-class Walk {
-  public:
-    Walk(const mesh::Field<Value>& field, const PartView& part, double isovalue, WalkScratch& scratch)
-        : field_(field), part_(part), isovalue_(isovalue), corner_signs_(isovalue), scratch_(scratch) {
-        const std::size_t words = (part.cells + kWord - 1) / kWord;
-        if (scratch.visited.size() != words) scratch.visited = std::vector<std::atomic<std::uint64_t>>(words);
-        scratch.cells.clear();
-    }
-
-    // Visits every cell that can be reached from the seeds, and leaves them in the scratch memory.
-    void run(Crew& crew) {
-        Array<std::int32_t> lot;
-        RangeLookup(part_.low, part_.high, part_.skeleton_size).find(isovalue_, [&](std::size_t n) {
-            lot.push_back(part_.skeleton[n]);
-        });
-        seeds_ = lot.size();
-        std::erase_if(lot, [&](std::int32_t cell) { return !mark(cell, true); });
-        if (lot.empty()) return;
-        SharedCells shared;
-        shared.give(std::move(lot));
-        crew.together([&](std::size_t) {
-            shared.take_turns([&](Array<std::int32_t>& cells) { follow(cells, crew.size() == 1 ? nullptr : &shared); });
-        });
-        collect();
-    }
-
-    std::size_t seeds() const { return seeds_; }
-    std::size_t size() const { return scratch_.cells.size(); }
-    const std::int32_t* cells() const { return scratch_.cells.data(); }  // that were visited, ascending
+struct MetCells {
+    const std::int32_t* records;
+    const Value* values;
+    mesh::CornerSigns<Value> corner_signs;
 
     const std::int32_t* record(std::int32_t cell) const {
-        return part_.records + kRecord<Cell> * static_cast<std::size_t>(cell);
+        return records + kRecord<Cell> * static_cast<std::size_t>(cell);
     }
 
     // Which corners of a cell are inside.
-    mesh::Mask signs(const std::int32_t* corners) const {
-        return corner_signs_.template of<Cell>(field_.values, corners);
-    }
+    mesh::Mask signs(std::int32_t cell) const { return corner_signs.template of<Cell>(values, record(cell)); }
 
     void prefetch_record(std::int32_t cell) const {
         ISOCORE_PREFETCH(record(cell));
         if constexpr (64 % (4 * kRecord<Cell>) != 0) ISOCORE_PREFETCH(record(cell) + kRecord<Cell> - 1);
     }
     void prefetch_values(std::int32_t cell) const {
-        for (std::size_t n = 0; n < Cell::kCorners; ++n) ISOCORE_PREFETCH(field_.values + record(cell)[n]);
+        for (std::size_t n = 0; n < Cell::kCorners; ++n) ISOCORE_PREFETCH(values + record(cell)[n]);
     }
+};
+
+template <class Cell, class Value>
+class Walk {
+  public:
+    Walk(const mesh::Field<Value>& field, const PartView& part, double isovalue, WalkScratch& scratch)
+        : part_(part),
+          isovalue_(isovalue),
+          met_{part.records, field.values, mesh::CornerSigns<Value>(isovalue)},
+          scratch_(scratch) {
+        scratch.marks.resize(part.cells);
+    }
+
+    // Visits every cell that can be reached from the seeds, and leaves them in the scratch memory.
+    void run(Crew& crew) {
+        Array<std::int32_t> seeds;
+        RangeLookup(part_.low, part_.high, part_.skeleton_size).find(isovalue_, [&](std::size_t n) {
+            seeds.push_back(part_.skeleton[n]);
+        });
+        seeds_ = seeds.size();
+        const Marks::Setter marks = scratch_.marks.setter();
+        std::erase_if(seeds, [&](std::int32_t cell) { return !marks.find(cell); });
+        if (seeds.empty()) return;
+        if (scratch_.queues.size() < crew.size()) scratch_.queues.resize(crew.size());
+        SharedCells shared;
+        shared.give(std::move(seeds));
+        crew.together([&](std::size_t member) {
+            shared.take_turns([&](const Array<std::int32_t>& lot) {
+                follow(lot, scratch_.queues[member], crew.size() == 1 ? nullptr : &shared);
+            });
+        });
+        collect();
+    }
+
+    std::size_t seeds() const { return seeds_; }
+    std::size_t size() const { return size_; }
+    const std::int32_t* cells() const { return scratch_.cells.data(); }  // that were visited, ascending
+    const std::uint8_t* signs() const { return scratch_.signs.data(); }  // which corners of each are inside
+
+    const std::int32_t* record(std::int32_t cell) const { return met_.record(cell); }
+    void prefetch_record(std::int32_t cell) const { met_.prefetch_record(cell); }
 
   private:
-    static constexpr std::size_t kWord = 64;  // cells
-    static constexpr std::size_t kRecordsAhead = 16, kValuesAhead = 8, kWorthSharing = 64;
+    static constexpr std::size_t kRecordsAhead = 24, kValuesAhead = 8;  // cells
+    static constexpr std::size_t kSteps = 64;  // between two looks at whether others want cells
 
-    // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed. Behind
-    // the cells there is always room for those that one step may find.
-    void follow(Array<std::int32_t>& cells, SharedCells* shared) {
-        std::size_t count = cells.size();
-        for (std::size_t head = 0; head < count; ++head) {
-            if (count + Cell::kFaces > cells.size()) cells.resize(2 * count + kWorthSharing);
-            if (head + kRecordsAhead < count) prefetch_record(cells[head + kRecordsAhead]);
-            if (head + kValuesAhead < count) prefetch_values(cells[head + kValuesAhead]);
-            count += step(cells[head], cells.data() + count, shared == nullptr);
-            if (shared == nullptr || count - head < kWorthSharing || !shared->wanted()) continue;
-            const std::size_t half = (count - head) / 2;
-            const auto end = cells.begin() + static_cast<std::ptrdiff_t>(count);
-            shared->give({end - static_cast<std::ptrdiff_t>(half), end});
-            count -= half;
+    // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed.
+    void follow(const Array<std::int32_t>& lot, Array<std::int32_t>& queue, SharedCells* shared) {
+        std::size_t head = 0, count = lot.size();
+        queue.resize(std::max(queue.size(), count));
+        std::copy(lot.begin(), lot.end(), queue.begin());
+        while (head < count) {
+            const std::size_t end = std::min(count, head + kSteps), room = count + Cell::kFaces * kSteps;
+            if (room > queue.size()) queue.resize(2 * room);
+            count = take_steps(queue.data(), head, end, count);
+            head = end;
+            if (shared == nullptr || count - head < kSteps || !shared->wanted()) continue;
+            const std::size_t kept = count - (count - head) / 2;
+            shared->give({queue.data() + kept, queue.data() + count});
+            count = kept;
         }
     }
 
-    // Writes the neighbours that are new and returns how many these are. Which ones is unpredictable, so there is no
-    // branch on it where no other thread could come between.
-    std::size_t step(std::int32_t cell, std::int32_t* found, bool alone) {
-        const std::int32_t* corners = record(cell);
-        Neighbours<Cell> across;
-        across.find(corners + Cell::kCorners, mesh::kCrossedFaces<Cell>[signs(corners)]);
-        return alone ? step_alone(across, found) : step_shared(across, found);
-    }
-
-    std::size_t step_alone(const Neighbours<Cell>& across, std::int32_t* found) {
-        std::atomic<std::uint64_t>* const visited = scratch_.visited.data();
-        std::size_t count = 0;
-        for (std::size_t face = 0; face < Cell::kFaces; ++face) {
-            const std::uint32_t next = across.cells[face];
-            const std::uint64_t bit = across.bit(face) << next % kWord;
-            std::atomic<std::uint64_t>& word = visited[next / kWord];
-            const std::uint64_t before = word.load(std::memory_order_relaxed);
-            word.store(before | bit, std::memory_order_relaxed);
-            found[count] = static_cast<std::int32_t>(next);
-            count += (bit & ~before) != 0;
-        }
-        return count;
-    }
-
-    std::size_t step_shared(const Neighbours<Cell>& across, std::int32_t* found) {
-        std::size_t perhaps = 0, count = 0;
-        for (std::size_t face = 0; face < Cell::kFaces; ++face) {
-            const std::uint32_t next = across.cells[face];
-            const std::uint64_t bit = across.bit(face) << next % kWord,
-                                before = scratch_.visited[next / kWord].load(std::memory_order_relaxed);
-            found[perhaps] = static_cast<std::int32_t>(next);
-            perhaps += (bit & ~before) != 0;
-        }
-        for (std::size_t n = 0; n < perhaps; ++n) {
-            if (mark(found[n], false)) found[count++] = found[n];
-        }
-        return count;
-    }
-
-    // Marks a cell as visited; returns whether it was not. Without other threads no atomic exchange is needed.
-    bool mark(std::int32_t cell, bool alone) {
-        std::atomic<std::uint64_t>& word = scratch_.visited[static_cast<std::size_t>(cell) / kWord];
-        const std::uint64_t bit = std::uint64_t{1} << static_cast<std::size_t>(cell) % kWord,
-                            before = word.load(std::memory_order_relaxed);
-        if (before & bit) return false;
-        if (!alone) return !(word.fetch_or(bit, std::memory_order_relaxed) & bit);
-        word.store(before | bit, std::memory_order_relaxed);
-        return true;
-    }
-
-    // Lists the visited cells, and leaves no bit behind.
-    void collect() {
-        for (std::size_t word = 0; word < scratch_.visited.size(); ++word) {
-            std::uint64_t left = scratch_.visited[word].load(std::memory_order_relaxed);
-            if (left == 0) continue;
-            scratch_.visited[word].store(0, std::memory_order_relaxed);
-            for (; left != 0; left &= left - 1) {
-                scratch_.cells.push_back(
-                    static_cast<std::int32_t>(kWord * word + static_cast<std::size_t>(std::countr_zero(left))));
+    // Takes a step from each of the cells between head and end, writes the neighbours that are new behind all `count`
+    // cells, where there is room for them, and returns how many cells that makes. Which neighbours are new is
+    // unpredictable, so there is no branch on it.
+    std::size_t take_steps(std::int32_t* cells, std::size_t head, std::size_t end, std::size_t count) const {
+        const Marks::Setter marks = scratch_.marks.setter();
+        const MetCells<Cell, Value> met = met_;
+        for (; head < end; ++head) {
+            if (head + kRecordsAhead < count) {
+                met.prefetch_record(cells[head + kRecordsAhead]);
+                met.prefetch_values(cells[head + kValuesAhead]);
+                prefetch_marks(marks, met.record(cells[head + kValuesAhead]) + Cell::kCorners);
             }
+            const std::int32_t cell = cells[head];
+            const mesh::Mask signs = met.signs(cell);
+            for_each(neighbours(Cell{}, cell, met.record(cell) + Cell::kCorners, signs), [&](std::int32_t next) {
+                cells[count] = next;
+                count += marks.find(next);
+            });
+            marks.set_signs(cell, signs);
         }
+        return count;
     }
 
-    const mesh::Field<Value>& field_;
+    // Also of cells that do not exist, where there is no twin: that does no harm.
+    static void prefetch_marks(const Marks::Setter& marks, const std::int32_t* twins) {
+        for (std::size_t n = 0; n < Cell::kFaces; ++n)
+            marks.prefetch(static_cast<std::uint32_t>(twins[n]) / Cell::kFaces);
+    }
+
+    // Lists the visited cells, ascending, and their signs; where threads have lost these, anew.
+    void collect() {
+        scratch_.marks.take([&](std::size_t first, const auto& marks, std::uint64_t visited) {
+            const auto found = static_cast<std::size_t>(std::popcount(visited));
+            if (size_ + found > scratch_.cells.size()) {
+                scratch_.cells.resize(2 * (size_ + found));
+                scratch_.signs.resize(2 * (size_ + found));
+            }
+            std::int32_t* const cells = scratch_.cells.data() + size_;
+            std::uint8_t* const signs = scratch_.signs.data() + size_;
+            for (std::size_t n = 0; n < found; ++n, visited &= visited - 1) {
+                const auto place = static_cast<std::size_t>(std::countr_zero(visited));
+                cells[n] = static_cast<std::int32_t>(first + place);
+                signs[n] = marks[place];
+                if (signs[n] == Marks::kFound) signs[n] = static_cast<std::uint8_t>(met_.signs(cells[n]));
+            }
+            size_ += found;
+        });
+    }
+
     const PartView& part_;
     double isovalue_;
-    mesh::CornerSigns<Value> corner_signs_;
+    MetCells<Cell, Value> met_;
     WalkScratch& scratch_;
-    std::size_t seeds_ = 0;
+    std::size_t seeds_ = 0, size_ = 0;
 };
 
 }  // namespace isocore::thinning
