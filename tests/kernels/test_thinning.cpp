@@ -167,6 +167,22 @@ void a_table_numbers_edges_in_their_order_while_it_grows() {
     }
 }
 
+void a_table_of_more_edges_than_16_bits_can_number() {
+    constexpr std::int32_t kEdges = 70000;
+    std::vector<thinning::EdgeKey> edges(kEdges);
+    for (std::int32_t n = 0; n < kEdges; ++n) edges[static_cast<std::size_t>(n)] = thinning::edge_key(n, n + 1);
+    thinning::EdgeTable table;
+    for (const std::size_t expected : {1, 4000, 70000}) {
+        table.start(expected);
+        for (int run = 0; run < 2; ++run) {
+            std::vector<std::uint32_t> places(edges.size());
+            table.place(edges.data(), edges.size(), places.data());
+            for (std::size_t n = 0; n < edges.size(); ++n) CHECK(places[n] == n && table[n] == edges[n]);
+            CHECK(table.size() == edges.size());
+        }
+    }
+}
+
 void triangles_of_a_tetrahedron_face_outside() {
     constexpr std::array<std::array<double, 3>, 4> kPlaces{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (unsigned signs = 1; signs < 15; ++signs) {
@@ -223,6 +239,7 @@ void connectedness_is_that_of_corners_and_edges() {
 
 void test_thinning() {
     a_table_numbers_edges_in_their_order_while_it_grows();
+    a_table_of_more_edges_than_16_bits_can_number();
     triangles_of_a_tetrahedron_face_outside();
     no_hexahedron_draws_a_diagonal_in_a_face();
     connectedness_is_that_of_corners_and_edges();

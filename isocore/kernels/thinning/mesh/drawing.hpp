@@ -38,7 +38,7 @@ class Drawing {
 
   private:
     using Pen = std::conditional_t<std::is_same_v<Cell, mesh::Tet>, TetPen<Value>, HexPen<Value>>;
-    static constexpr std::size_t kBatch = 64, kRecordsAhead = 12;
+    static constexpr std::size_t kBatch = 64, kRecordsAhead = 32;
 
     struct Batch {
         std::array<EdgeKey, Pen::kMostEdges * kBatch> edges;             // the crossed edges of all cells, cell by cell

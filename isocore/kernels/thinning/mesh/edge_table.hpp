@@ -28,37 +28,24 @@ class EdgeTable {
     // Empties the table and makes room for about so many edges; it grows where there are many more. Whether a search
     // must go on to another slot is unpredictable, so hardly one ever must.
     void start(std::size_t expected) {
-        slots_.assign(std::bit_ceil(4 * expected + 1), 0);
+        clear(std::bit_ceil(8 * expected + 1));
         count_ = 0;
     }
 
-    // Writes the place of each edge among those seen so far, where a new edge gets the next one. Slots count places
-    // from 1, and an empty slot leads to the edge that is searched for: so a search ends on one condition. Whether an
-    // edge is new is unpredictable, so there is no branch on it: every edge is written as if it were.
+    // Writes the place of each edge among those seen so far, where a new edge gets the next one.
     void place(const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
-        while (2 * (count_ + size) > slots_.size()) grow();
+        while (2 * (count_ + size) > slots_) grow();
         edges_.resize(std::max(edges_.size(), count_ + size + 2));
-        EdgeKey *const seen = edges_.data(), &wanted = seen[0];
-        std::uint32_t* const slots = slots_.data();
-        std::uint32_t count = count_;
-        const Slots slot_of(slots_.size());
-        for (std::size_t n = 0; n < size; ++n) {
-            const EdgeKey edge = wanted = edges[n];
-            std::size_t slot = slot_of.first(edge);
-            while (seen[slots[slot]] != edge) slot = slot_of.next(slot);
-            const std::uint32_t known = slots[slot], fresh = known == 0, place = known | ((count + 1) & -fresh);
-            slots[slot] = place;
-            seen[count + 1] = edge;
-            count += fresh;
-            out[n] = place - 1;
-        }
-        count_ = count;
+        slots_ <= kMostNarrow ? place(narrow_.data(), edges, size, out) : place(wide_.data(), edges, size, out);
     }
 
     std::size_t size() const { return count_; }
     EdgeKey operator[](std::size_t place) const { return edges_[place + 1]; }
 
   private:
+    // Half of so many places can be told in 16 bits. Slots of 16 bits take half of the cache.
+    static constexpr std::size_t kMostNarrow = std::size_t{1} << 16;
+
     // Where an edge may stand.
     struct Slots {
         explicit Slots(std::size_t size) : mask(size - 1), shift(64 - std::countr_zero(size)) {}
@@ -68,18 +55,55 @@ class EdgeTable {
         int shift;
     };
 
+    void clear(std::size_t slots) {
+        slots_ = slots;
+        slots <= kMostNarrow ? narrow_.assign(slots, 0) : wide_.assign(slots, 0);
+    }
+
+    // Slots count places from 1, and an empty slot leads to the edge that is searched for: so a search ends on one
+    // condition. Whether an edge is new is unpredictable, so there is no branch on it: every edge is written as if it
+    // were.
+    template <class Slot>
+    void place(Slot* slots, const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
+        EdgeKey *const seen = edges_.data(), &wanted = seen[0];
+        std::uint32_t count = count_;
+        const Slots slot_of(slots_);
+        for (std::size_t n = 0; n < size; ++n) {
+            const EdgeKey edge = wanted = edges[n];
+            std::size_t slot = slot_of.first(edge);
+            std::uint32_t known = slots[slot];
+            while (seen[known] != edge) {
+                slot = slot_of.next(slot);
+                known = slots[slot];
+            }
+            const std::uint32_t fresh = known == 0, place = known | ((count + 1) & -fresh);
+            slots[slot] = static_cast<Slot>(place);
+            seen[count + 1] = edge;
+            count += fresh;
+            out[n] = place - 1;
+        }
+        count_ = count;
+    }
+
     void grow() {
-        slots_.assign(2 * slots_.size(), 0);
-        const Slots slot_of(slots_.size());
+        clear(2 * slots_);
+        slots_ <= kMostNarrow ? place_again(narrow_.data()) : place_again(wide_.data());
+    }
+
+    template <class Slot>
+    void place_again(Slot* slots) const {
+        const Slots slot_of(slots_);
         for (std::uint32_t place = 1; place <= count_; ++place) {
             std::size_t slot = slot_of.first(edges_[place]);
-            while (slots_[slot] != 0) slot = slot_of.next(slot);
-            slots_[slot] = place;
+            while (slots[slot] != 0) slot = slot_of.next(slot);
+            slots[slot] = static_cast<Slot>(place);
         }
     }
 
-    Array<std::uint32_t> slots_;  // places from 1 on, or 0
-    Array<EdgeKey> edges_;        // the one that is searched for, then those seen
+    Array<std::uint16_t> narrow_;  // places from 1 on, or 0; in use where there are few slots
+    Array<std::uint32_t> wide_;    // the same for many
+    std::size_t slots_ = 0;
+    Array<EdgeKey> edges_;  // the one that is searched for, then those seen
     std::uint32_t count_ = 0;
 };
 

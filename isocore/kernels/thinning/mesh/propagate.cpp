@@ -185,7 +185,7 @@ class Propagation {
         }
     }
 
-    static constexpr size_t kAhead = 24;  // edges
+    static constexpr size_t kAhead = 40;  // edges
 
     const Field<Value>& field_;
     const IndexView& index_;
