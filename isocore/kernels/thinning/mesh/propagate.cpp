@@ -93,9 +93,9 @@ class Propagation {
                 ++out.vertices;
                 continue;
             }
-            const auto next = std::upper_bound(lots_.begin(), lots_.end(), point,
-                                               [](int32_t low, const Lot& other) { return low < other.point; });
-            out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(next - lots_.begin() - 1)});
+            size_t owner = lot + 1;  // mostly
+            while (lots_[owner + 1].point <= point) ++owner;
+            out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(owner)});
         }
     }
 
