@@ -61,14 +61,15 @@ struct Inside {
 // index order, so that all cells around the edge agree to the last bit.
 template <class Sample>
 double crossing(Sample a, Sample b, double isovalue) {
+    const double fa = static_cast<double>(a), fb = static_cast<double>(b), across = fb - fa;
     if constexpr (std::is_floating_point_v<Sample>) {
-        if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
+        if (!std::isfinite(
+                across)) {  // as it is iff both samples are finite and not too far apart, which doubles can be
+            if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
+            return crossing(fa / 4, fb / 4, isovalue / 4);
+        }
     }
-    const double fa = static_cast<double>(a), fb = static_cast<double>(b);
-    if constexpr (std::is_same_v<Sample, double>) {  // only there a difference of two samples can be too large
-        if (!std::isfinite(fb - fa)) return crossing(a / 4, b / 4, isovalue / 4);
-    }
-    const double t = (isovalue - fa) / (fb - fa), above = t > kClamp ? t : kClamp;  // a conditional move
+    const double t = (isovalue - fa) / across, above = t > kClamp ? t : kClamp;  // a conditional move
     return above < 1 - kClamp ? above : 1 - kClamp;
 }
 
