@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "thinning/mesh/faces.hpp"
 #include "thinning/mesh/thinning.hpp"
 
 namespace isocore::thinning {
@@ -58,6 +59,12 @@ bool glued_both_ways(const PartView& part, size_t cell) {
 }
 
 template <class Cell>
+bool glued_nowhere(const PartView& part, size_t cell) {
+    const int32_t* twins = part.records + kRecord<Cell> * cell + Cell::kCorners;
+    return std::all_of(twins, twins + Cell::kFaces, [](int32_t twin) { return twin < 0; });
+}
+
+template <class Cell>
 void check_part(const PartView& part, size_t points) {
     int32_t lowest = 0;
     for (size_t cell = 0; cell < part.cells; ++cell) {
@@ -70,6 +77,8 @@ void check_part(const PartView& part, size_t points) {
     }
     for (size_t cell = 0; cell < part.cells; ++cell) {
         require(glued_both_ways<Cell>(part, cell), "a record is glued to a cell that is not glued to it");
+        require(!is_collapsed<Cell>(part.records + kRecord<Cell> * cell) || glued_nowhere<Cell>(part, cell),
+                "a record names a point twice and is glued all the same");
     }
     require(all_below(part.skeleton, part.skeleton_size, part.cells), "the skeleton names a cell that does not exist");
     require(std::is_sorted(part.low, part.low + part.skeleton_size), "the skeleton is not sorted by its low ends");

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -57,49 +58,63 @@ class Marks {
     void resize(std::size_t cells) {
         if (cells == cells_) return;
         cells_ = cells;
-        marks_ = std::make_unique<Mark[]>(kGroup * groups());
-        groups_ = std::make_unique<Mark[]>(groups());
+        marks_ = std::make_unique<Mark[]>(kGroup * kGroups * chunks());
+        groups_ = std::make_unique<Mark[]>(kGroups * chunks());
     }
 
-    // Calls visit(first cell, marks, set of those that are not 0) for every group that has some, ascending, and leaves
-    // none behind. Nobody may set marks meanwhile.
+    // Cells come in chunks. What follows may be called of several chunks at a time, but not while anybody sets marks.
+    std::size_t chunks() const { return (cells_ + kGroup * kGroups - 1) / (kGroup * kGroups); }
+
+    // How many cells of a chunk have marks.
+    std::size_t count(std::size_t chunk) const {
+        std::size_t all = 0;
+        for_groups(chunk, [&](std::size_t group) {
+            all += static_cast<std::size_t>(std::popcount(not_zero(marks_.get() + kGroup * group)));
+        });
+        return all;
+    }
+
+    // Calls visit(first cell, marks, set of those that are not 0) for the groups of a chunk, ascending, and leaves no
+    // mark behind.
     template <class Visit>
-    void take(const Visit& visit) {
-        std::array<std::uint8_t, kWord> touched;
-        std::array<std::uint8_t, kGroup> marks;
-        for (std::size_t first = 0; first < groups(); first += kWord) {
-            take(groups_.get() + first, touched);
-            if (touched == std::array<std::uint8_t, kWord>{}) continue;
-            for (std::size_t n = 0; n < kWord; ++n) {
-                if (touched[n] == 0) continue;
-                take(marks_.get() + kGroup * (first + n), marks);
-                visit(kGroup * (first + n), marks, not_zero(marks));
+    void take(std::size_t chunk, const Visit& visit) {
+        for_groups(chunk, [&](std::size_t group) {
+            Mark* const there = marks_.get() + kGroup * group;
+            std::array<std::uint8_t, kGroup> marks;
+            std::memcpy(marks.data(), static_cast<const void*>(there), kGroup);
+            visit(kGroup * group, marks, not_zero(there));
+            std::memset(static_cast<void*>(there), 0, kGroup);
+            groups_[group].store(0, std::memory_order_relaxed);
+        });
+    }
+
+  private:
+    static constexpr std::size_t kGroups = 512;  // in a chunk
+
+    // Calls visit(group) for those with signs, ascending. Most have none, and eight of them are passed over at once.
+    template <class Visit>
+    void for_groups(std::size_t chunk, const Visit& visit) const {
+        for (std::size_t first = kGroups * chunk; first < kGroups * (chunk + 1); first += 8) {
+            std::uint64_t eight;
+            std::memcpy(&eight, static_cast<const void*>(groups_.get() + first), 8);
+            if (eight == 0) continue;
+            for (std::size_t group = first; group < first + 8; ++group) {
+                if (groups_[group].load(std::memory_order_relaxed) != 0) visit(group);
             }
         }
     }
 
-  private:
-    static constexpr std::size_t kWord = 8;  // groups that are passed over together
-
-    std::size_t groups() const { return (cells_ + kGroup * kWord - 1) / (kGroup * kWord) * kWord; }
-
-    // Several marks at once, of which none remains.
-    template <std::size_t count>
-    static void take(Mark* marks, std::array<std::uint8_t, count>& out) {
-        std::memcpy(out.data(), static_cast<void*>(marks), count);
-        std::memset(static_cast<void*>(marks), 0, count);
-    }
-
-    static std::uint64_t not_zero(const std::array<std::uint8_t, kGroup>& marks) {
+    static std::uint64_t not_zero(const Mark* group) {
         std::uint64_t set = 0;
 #if defined(__AVX2__)
         for (std::size_t n = 0; n < kGroup; n += 32) {
-            const __m256i some = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(marks.data() + n)),
-                          zeros = _mm256_cmpeq_epi8(some, _mm256_setzero_si256());
+            const __m256i marks = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(group + n)),
+                          zeros = _mm256_cmpeq_epi8(marks, _mm256_setzero_si256());
             set |= std::uint64_t{~static_cast<std::uint32_t>(_mm256_movemask_epi8(zeros))} << n;
         }
 #else
-        for (std::size_t n = 0; n < kGroup; ++n) set |= std::uint64_t{marks[n] != 0} << n;
+        for (std::size_t n = 0; n < kGroup; ++n)
+            set |= std::uint64_t{group[n].load(std::memory_order_relaxed) != 0} << n;
 #endif
         return set;
     }

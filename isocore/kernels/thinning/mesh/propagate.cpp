@@ -7,7 +7,6 @@
 // So an edge belongs to the lot with its lower point: no later lot can have cells around it. Most edges are seen by
 // that lot alone; the others are sent to it.
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
@@ -60,7 +59,7 @@ class Propagation {
         make_room(with_edges);
         for_lots([&](size_t lot) { join(lot); });
         if (mesh_.vertices.size() > 3 * on_edges_) for_lots([&](size_t lot) { place_middles(lot); });
-        if (collapsed_) drop_collapsed(mesh_.triangles);
+        if (tets_.met_collapsed() || hexes_.met_collapsed()) drop_collapsed(mesh_.triangles);
         mesh_.seeds = tets_.seeds() + hexes_.seeds();
         mesh_.visited = tets_.size() + hexes_.size();
         return std::move(mesh_);
@@ -121,55 +120,68 @@ class Propagation {
         Drawn& from = drawn(lot);
         Array<uint32_t>& vertex_of = from.vertex_of;
         vertex_of.resize(from.edges.size());
-        auto abroad = from.abroad.begin();
-        size_t vertex = places_[lot].vertex;
-        for (size_t place = 0; place < from.edges.size(); ++place) {
-            if (place + kAhead < from.edges.size()) prefetch_points(from.edges[place + kAhead]);
-            if (abroad != from.abroad.end() && abroad->place == place) {
-                vertex_of[place] += static_cast<uint32_t>(places_[abroad++->lot].vertex);
-                continue;
-            }
-            vertex_of[place] = static_cast<uint32_t>(vertex);
-            place_vertex(from.edges[place], vertex++);
+        size_t place = 0, vertex = places_[lot].vertex;
+        for (const EdgeAbroad& abroad : from.abroad) {
+            vertex = place_vertices(from, place, abroad.place, vertex);
+            vertex_of[abroad.place] += static_cast<uint32_t>(places_[abroad.lot].vertex);
+            place = abroad.place + size_t{1};
         }
+        place_vertices(from, place, from.edges.size(), vertex);
         int32_t* out = mesh_.triangles.data() + places_[lot].corner;
+        const uint32_t* const vertices = vertex_of.data();
         if (from.middles.empty())
-            write_triangles(from.triangles, out, [&](uint32_t corner) { return vertex_of[corner]; });
+            write_triangles(from.triangles, out, [=](uint32_t corner) { return vertices[corner]; });
         else
-            write_triangles(from.triangles, out, [&, first = on_edges_ + places_[lot].middle](uint32_t corner) {
-                return corner < Drawn::kMiddles ? vertex_of[corner]
+            write_triangles(from.triangles, out, [=, first = on_edges_ + places_[lot].middle](uint32_t corner) {
+                return corner < Drawn::kMiddles ? vertices[corner]
                                                 : static_cast<uint32_t>(first) + (corner - Drawn::kMiddles);
             });
     }
 
     template <class VertexAt>
-    void write_triangles(const Array<uint32_t>& corners, int32_t* out, const VertexAt& vertex_at) {
-        bool collapsed = false;
-        for (size_t n = 0; n < corners.size(); n += 3) {
-            const uint32_t a = vertex_at(corners[n]), b = vertex_at(corners[n + 1]), c = vertex_at(corners[n + 2]);
-            collapsed |= (a == b) | (b == c) | (c == a);
-            out[n] = static_cast<int32_t>(a);
-            out[n + 1] = static_cast<int32_t>(b);
-            out[n + 2] = static_cast<int32_t>(c);
+    static void write_triangles(const Array<uint32_t>& corners, int32_t* out, const VertexAt& vertex_at) {
+        const uint32_t* corner = corners.data();
+        for (const uint32_t* const end = corner + corners.size(); corner < end; corner += 3, out += 3) {
+            const uint32_t a = vertex_at(corner[0]), b = vertex_at(corner[1]), c = vertex_at(corner[2]);
+            out[0] = static_cast<int32_t>(a);
+            out[1] = static_cast<int32_t>(b);
+            out[2] = static_cast<int32_t>(c);
         }
-        if (collapsed) collapsed_ = true;
     }
 
-    void prefetch_points(EdgeKey edge) const {
+    // Places the vertices of the edges from `place` on, as far as `end`. Returns the number of the next vertex.
+    size_t place_vertices(Drawn& from, size_t place, size_t end, size_t vertex) {
+        const Field<Value> field = field_;  // whose pointers stay in registers
+        const int32_t* const original = index_.points;
+        const size_t edges = from.edges.size();
+        Coordinate* out = mesh_.vertices.data() + 3 * vertex;
+        if (!mesh_.edges.empty()) write_edges(from.edges, place, end, mesh_.edges.data() + 2 * vertex);
+        for (; place < end; ++place, out += 3) {
+            if (place + kAhead < edges) prefetch_points(field, original, from.edges[place + kAhead]);
+            const EdgeKey edge = from.edges[place];
+            const int32_t low = low_point(edge), high = high_point(edge),
+                          swapped = (low ^ high) & -int32_t{original[high] < original[low]};  // unpredictable
+            field.cross(low ^ swapped, high ^ swapped, isovalue_, out);
+            from.vertex_of[place] = static_cast<uint32_t>(vertex++);
+        }
+        return vertex;
+    }
+
+    static void prefetch_points(const Field<Value>& field, const int32_t* original, EdgeKey edge) {
         for (const int32_t point : {low_point(edge), high_point(edge)}) {
-            ISOCORE_PREFETCH(field_.point(point));
-            ISOCORE_PREFETCH(field_.point(point) + 2);
-            ISOCORE_PREFETCH(field_.values + point);
-            ISOCORE_PREFETCH(index_.points + point);
+            ISOCORE_PREFETCH(field.point(point));
+            ISOCORE_PREFETCH(field.point(point) + 2);
+            ISOCORE_PREFETCH(field.values + point);
+            ISOCORE_PREFETCH(original + point);
         }
     }
 
-    void place_vertex(EdgeKey edge, size_t vertex) {
-        const int32_t low = low_point(edge), high = high_point(edge), a = index_.points[low], b = index_.points[high];
-        field_.cross(a < b ? low : high, a < b ? high : low, isovalue_, mesh_.vertices.data() + 3 * vertex);
-        if (mesh_.edges.empty()) return;
-        mesh_.edges[2 * vertex] = std::min(a, b);
-        mesh_.edges[2 * vertex + 1] = std::max(a, b);
+    void write_edges(const EdgeTable& edges, size_t place, size_t end, int32_t* out) const {
+        for (; place < end; ++place) {
+            const int32_t a = index_.points[low_point(edges[place])], b = index_.points[high_point(edges[place])];
+            *out++ = std::min(a, b);
+            *out++ = std::max(a, b);
+        }
     }
 
     void place_middles(size_t lot) {
@@ -198,7 +210,6 @@ class Propagation {
     std::vector<Places> places_;
     size_t on_edges_ = 0;  // vertices
     Mesh<Coordinate> mesh_;
-    std::atomic<bool> collapsed_{false};
 };
 
 }  // namespace

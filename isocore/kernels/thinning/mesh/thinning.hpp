@@ -54,8 +54,9 @@ struct IndexView {
     const std::int32_t* points;  // the mesh's id of every point of the index
 };
 
-// Throws std::invalid_argument unless all that the index names is there, cells are glued both ways and in the order of
-// their lowest points, and the skeleton is sorted by low. `points` is how many there are.
+// Throws std::invalid_argument unless all that the index names is there, cells are glued both ways, but not where they
+// name a point twice, and in the order of their lowest points, and the skeleton is sorted by low. `points` is how many
+// there are.
 void check_index(const IndexView& index, std::size_t points);
 
 template <class Coordinate>

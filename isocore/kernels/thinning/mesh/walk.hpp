@@ -10,12 +10,14 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "common/corner_signs.hpp"
 #include "common/crew.hpp"
 #include "common/prefetch.hpp"
+#include "thinning/mesh/faces.hpp"
 #include "thinning/mesh/neighbours.hpp"
 #include "thinning/mesh/scratch.hpp"
 #include "thinning/mesh/shared_cells.hpp"
@@ -65,6 +67,8 @@ class Walk {
             seeds.push_back(part_.skeleton[n]);
         });
         seeds_ = seeds.size();
+        met_collapsed_ = std::any_of(seeds.begin(), seeds.end(),
+                                     [&](std::int32_t cell) { return is_collapsed<Cell>(met_.record(cell)); });
         const Marks::Setter marks = scratch_.marks.setter();
         std::erase_if(seeds, [&](std::int32_t cell) { return !marks.find(cell); });
         if (seeds.empty()) return;
@@ -76,10 +80,12 @@ class Walk {
                 follow(lot, scratch_.queues[member], crew.size() == 1 ? nullptr : &shared);
             });
         });
-        collect();
+        collect(crew);
     }
 
     std::size_t seeds() const { return seeds_; }
+    // Is any visited cell one that names a point twice? Such a cell is glued to no other, so it can but be a seed.
+    bool met_collapsed() const { return met_collapsed_; }
     std::size_t size() const { return size_; }
     const std::int32_t* cells() const { return scratch_.cells.data(); }  // that were visited, ascending
     const std::uint8_t* signs() const { return scratch_.signs.data(); }  // which corners of each are inside
@@ -137,23 +143,30 @@ class Walk {
             marks.prefetch(static_cast<std::uint32_t>(twins[n]) / Cell::kFaces);
     }
 
-    // Lists the visited cells, ascending, and their signs; where threads have lost these, anew.
-    void collect() {
-        scratch_.marks.take([&](std::size_t first, const auto& marks, std::uint64_t visited) {
-            const auto found = static_cast<std::size_t>(std::popcount(visited));
-            if (size_ + found > scratch_.cells.size()) {
-                scratch_.cells.resize(2 * (size_ + found));
-                scratch_.signs.resize(2 * (size_ + found));
-            }
-            std::int32_t* const cells = scratch_.cells.data() + size_;
-            std::uint8_t* const signs = scratch_.signs.data() + size_;
-            for (std::size_t n = 0; n < found; ++n, visited &= visited - 1) {
+    // Lists the visited cells, ascending, and their signs.
+    void collect(Crew& crew) {
+        Marks& marks = scratch_.marks;
+        std::vector<std::size_t> first(marks.chunks() + 1);
+        crew.share(marks.chunks(), [&](std::size_t, std::size_t chunk) { first[chunk + 1] = marks.count(chunk); });
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        size_ = first.back();
+        scratch_.cells.resize(std::max(scratch_.cells.size(), size_));
+        scratch_.signs.resize(std::max(scratch_.signs.size(), size_));
+        crew.share(marks.chunks(), [&](std::size_t, std::size_t chunk) { collect(chunk, first[chunk]); });
+    }
+
+    // Lists those of a chunk. Where threads have lost a cell's signs, they are found anew.
+    void collect(std::size_t chunk, std::size_t first) {
+        std::int32_t* cells = scratch_.cells.data() + first;
+        std::uint8_t* signs = scratch_.signs.data() + first;
+        scratch_.marks.take(chunk, [&](std::size_t base, const auto& marks, std::uint64_t visited) {
+            for (; visited != 0; visited &= visited - 1) {
                 const auto place = static_cast<std::size_t>(std::countr_zero(visited));
-                cells[n] = static_cast<std::int32_t>(first + place);
-                signs[n] = marks[place];
-                if (signs[n] == Marks::kFound) signs[n] = static_cast<std::uint8_t>(met_.signs(cells[n]));
+                const auto cell = static_cast<std::int32_t>(base + place);
+                const std::uint8_t mark = marks[place];
+                *cells++ = cell;
+                *signs++ = mark != Marks::kFound ? mark : static_cast<std::uint8_t>(met_.signs(cell));
             }
-            size_ += found;
         });
     }
 
@@ -162,6 +175,7 @@ class Walk {
     MetCells<Cell, Value> met_;
     WalkScratch& scratch_;
     std::size_t seeds_ = 0, size_ = 0;
+    bool met_collapsed_ = false;
 };
 
 }  // namespace isocore::thinning
