@@ -44,7 +44,7 @@ class Marks {
             marks_[static_cast<std::uint32_t>(cell)].store(static_cast<std::uint8_t>(signs), std::memory_order_relaxed);
             groups_[static_cast<std::uint32_t>(cell) / kGroup].store(1, std::memory_order_relaxed);
         }
-        void prefetch(std::size_t cell) const { ISOCORE_PREFETCH(marks_ + cell); }
+        void prefetch(std::int32_t cell) const { ISOCORE_PREFETCH(marks_ + cell); }
 
       private:
         friend class Marks;

@@ -83,19 +83,27 @@ class Propagation {
         out.edges.start(end.tet - begin.tet + 2 * (end.hex - begin.hex));
         Drawing<Tet, Value>(field_, isovalue_, tets_).draw(begin.tet, end.tet, out);
         Drawing<Hex, Value>(field_, isovalue_, hexes_).draw(begin.hex, end.hex, out);
-        out.vertex_of.resize(out.edges.size());
-        out.vertices = 0;
-        for (size_t place = 0; place < out.edges.size(); ++place) {
+        number_vertices(lot);
+    }
+
+    // Numbers the vertices of the edges that are the lot's own, and lists the others.
+    void number_vertices(size_t lot) {
+        Drawn& out = drawn(lot);
+        const size_t edges = out.edges.size();
+        out.vertex_of.resize(edges);
+        uint32_t* const vertex_of = out.vertex_of.data();
+        const int32_t end = lots_[lot + 1].point;
+        uint32_t vertices = 0;
+        for (size_t place = 0; place < edges; ++place) {
             const int32_t point = low_point(out.edges[place]);
-            out.vertex_of[place] = out.vertices;
-            if (point < end.point) {
-                ++out.vertices;
-                continue;
-            }
+            vertex_of[place] = vertices;
+            vertices += point < end;
+            if (point < end) continue;
             size_t owner = lot + 1;  // mostly
             while (lots_[owner + 1].point <= point) ++owner;
             out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(owner)});
         }
+        out.vertices = vertices;
     }
 
     void make_room(bool with_edges) {

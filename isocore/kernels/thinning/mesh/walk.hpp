@@ -94,7 +94,7 @@ class Walk {
     void prefetch_record(std::int32_t cell) const { met_.prefetch_record(cell); }
 
   private:
-    static constexpr std::size_t kRecordsAhead = 24, kValuesAhead = 8;  // cells
+    static constexpr std::size_t kRecordsAhead = 40, kValuesAhead = 8;  // cells
     static constexpr std::size_t kSteps = 64;  // between two looks at whether others want cells
 
     // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed.
@@ -114,33 +114,44 @@ class Walk {
         }
     }
 
+    // Where some steps lead to.
+    struct Steps {
+        std::array<std::array<std::int32_t, Cell::kFaces>, kSteps> neighbours;
+        std::array<std::uint8_t, kSteps> signs;
+    };
+
     // Takes a step from each of the cells between head and end, writes the neighbours that are new behind all `count`
-    // cells, where there is room for them, and returns how many cells that makes. Which neighbours are new is
-    // unpredictable, so there is no branch on it.
+    // cells, where there is room for them, and returns how many cells that makes. First where all steps lead to, then
+    // the marks there: so the processor waits for many of them at once. Which neighbours are new is unpredictable, so
+    // there is no branch on it.
     std::size_t take_steps(std::int32_t* cells, std::size_t head, std::size_t end, std::size_t count) const {
         const Marks::Setter marks = scratch_.marks.setter();
-        const MetCells<Cell, Value> met = met_;
-        for (; head < end; ++head) {
-            if (head + kRecordsAhead < count) {
-                met.prefetch_record(cells[head + kRecordsAhead]);
-                met.prefetch_values(cells[head + kValuesAhead]);
-                prefetch_marks(marks, met.record(cells[head + kValuesAhead]) + Cell::kCorners);
-            }
-            const std::int32_t cell = cells[head];
-            const mesh::Mask signs = met.signs(cell);
-            for_each(neighbours(Cell{}, cell, met.record(cell) + Cell::kCorners, signs), [&](std::int32_t next) {
+        Steps steps;
+        look_around(cells, head, end, count, marks, steps);
+        for (std::size_t n = 0; n < end - head; ++n) {
+            for_each(steps.neighbours[n], [&](std::int32_t next) {
                 cells[count] = next;
                 count += marks.find(next);
             });
-            marks.set_signs(cell, signs);
+            marks.set_signs(cells[head + n], steps.signs[n]);
         }
         return count;
     }
 
-    // Also of cells that do not exist, where there is no twin: that does no harm.
-    static void prefetch_marks(const Marks::Setter& marks, const std::int32_t* twins) {
-        for (std::size_t n = 0; n < Cell::kFaces; ++n)
-            marks.prefetch(static_cast<std::uint32_t>(twins[n]) / Cell::kFaces);
+    void look_around(const std::int32_t* cells, std::size_t head, std::size_t end, std::size_t count,
+                     const Marks::Setter& marks, Steps& steps) const {
+        const MetCells<Cell, Value> met = met_;
+        for (std::size_t n = 0; n < end - head; ++n) {
+            const std::int32_t* const ahead = cells + head + n;
+            if (head + n + kRecordsAhead < count) {
+                met.prefetch_record(ahead[kRecordsAhead]);
+                met.prefetch_values(ahead[kValuesAhead]);
+            }
+            const mesh::Mask signs = met.signs(*ahead);
+            steps.neighbours[n] = neighbours(Cell{}, *ahead, met.record(*ahead) + Cell::kCorners, signs);
+            steps.signs[n] = static_cast<std::uint8_t>(signs);
+            for_each(steps.neighbours[n], [&](std::int32_t next) { marks.prefetch(next); });
+        }
     }
 
     // Lists the visited cells, ascending, and their signs.
