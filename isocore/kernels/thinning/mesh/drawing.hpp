@@ -45,23 +45,35 @@ class Drawing {
         std::array<std::uint32_t, Pen::kMostEdges*(kBatch + 1)> places;  // of these among the lot's edges
     };
 
+    // The visited cells, copied into the functions that write numbers: the pointers stay in registers then.
+    struct Seen {
+        explicit Seen(const Walk<Cell, Value>& walk)
+            : met(walk.met()), cells(walk.cells()), signs(walk.signs()), size(walk.size()) {}
+        const MetCells<Cell, Value> met;
+        const std::int32_t* const cells;
+        const std::uint8_t* const signs;
+        const std::size_t size;
+    };
+
     std::size_t list_edges(std::size_t first, std::size_t end, Batch& batch) const {
-        const std::int32_t* cells = walk_.cells();
+        const Seen seen(walk_);
+        const Pen pen = pen_;
         EdgeKey* out = batch.edges.data();
         for (std::size_t n = first; n < end; ++n) {
-            if (n + kRecordsAhead < walk_.size()) walk_.prefetch_record(cells[n + kRecordsAhead]);
-            out += pen_.write_edges(walk_.signs()[n], walk_.record(cells[n]), out);
+            if (n + kRecordsAhead < seen.size) seen.met.prefetch_record(seen.cells[n + kRecordsAhead]);
+            out += pen.write_edges(seen.signs[n], seen.met.record(seen.cells[n]), out);
         }
         return static_cast<std::size_t>(out - batch.edges.data());
     }
 
     std::uint32_t* list_triangles(std::size_t first, std::size_t end, const Batch& batch, std::uint32_t* out,
                                   Drawn& lot) const {
+        const Seen seen(walk_);
+        const Pen pen = pen_;
         const std::uint32_t* places = batch.places.data();
-        const std::int32_t* cells = walk_.cells();
         for (std::size_t n = first; n < end; ++n) {
             const auto [edges, corners] =
-                pen_.write_triangles(walk_.signs()[n], walk_.record(cells[n]), places, out, lot);
+                pen.write_triangles(seen.signs[n], seen.met.record(seen.cells[n]), places, out, lot);
             places += edges;
             out += corners;
         }

@@ -91,7 +91,7 @@ class Walk {
     const std::uint8_t* signs() const { return scratch_.signs.data(); }  // which corners of each are inside
 
     const std::int32_t* record(std::int32_t cell) const { return met_.record(cell); }
-    void prefetch_record(std::int32_t cell) const { met_.prefetch_record(cell); }
+    const MetCells<Cell, Value>& met() const { return met_; }
 
   private:
     static constexpr std::size_t kRecordsAhead = 40, kValuesAhead = 8;  // cells
