@@ -60,11 +60,17 @@ def _with_record(index: MeshIndex, column: int, number: int) -> MeshIndex:
     return replace(index, tets=replace(index.tets, records=records))
 
 
+def _naming_a_point_twice(index: MeshIndex) -> MeshIndex:
+    highest = int(index.tets.records[7, :4].argmax())
+    return _with_record(index, highest, int(index.tets.records[7, (highest + 1) % 4]))
+
+
 #: What is said -> an index that deserves it. Columns of a tetrahedron's record: 4 points, 4 twins.
 DAMAGES = {
     "a point that does not exist": lambda index: _with_record(index, 2, len(index.original)),
     "a point that does not": lambda index: _with_record(index, 2, -1),
     "a cell that does not exist": lambda index: _with_record(index, 5, 4 * len(index.tets.records)),
+    "names a point twice": _naming_a_point_twice,
     "is not glued to it": lambda index: _with_record(index, 5, 0),
     "the order of their lowest points": lambda index: replace(
         index, tets=replace(index.tets, records=index.tets.records[::-1].copy())

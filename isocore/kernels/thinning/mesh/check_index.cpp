@@ -59,8 +59,7 @@ bool glued_both_ways(const PartView& part, size_t cell) {
 }
 
 template <class Cell>
-bool glued_nowhere(const PartView& part, size_t cell) {
-    const int32_t* twins = part.records + kRecord<Cell> * cell + Cell::kCorners;
+bool glued_nowhere(const int32_t* twins) {
     return std::all_of(twins, twins + Cell::kFaces, [](int32_t twin) { return twin < 0; });
 }
 
@@ -72,13 +71,13 @@ void check_part(const PartView& part, size_t points) {
         require(all_below(corners, Cell::kCorners, points), "a record names a point that does not exist");
         require(twins_exist(twins, Cell::kFaces, Cell::kFaces * part.cells),
                 "a record names a cell that does not exist");
+        require(!is_collapsed<Cell>(corners) || glued_nowhere<Cell>(twins),
+                "a record names a point twice and is glued all the same");
         const int32_t before = std::exchange(lowest, *std::min_element(corners, twins));
         require(before <= lowest, "the cells are not in the order of their lowest points");
     }
     for (size_t cell = 0; cell < part.cells; ++cell) {
         require(glued_both_ways<Cell>(part, cell), "a record is glued to a cell that is not glued to it");
-        require(!is_collapsed<Cell>(part.records + kRecord<Cell> * cell) || glued_nowhere<Cell>(part, cell),
-                "a record names a point twice and is glued all the same");
     }
     require(all_below(part.skeleton, part.skeleton_size, part.cells), "the skeleton names a cell that does not exist");
     require(std::is_sorted(part.low, part.low + part.skeleton_size), "the skeleton is not sorted by its low ends");
