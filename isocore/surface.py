@@ -64,7 +64,7 @@ class Surface:
     colours: npt.NDArray[np.uint8] | None = None
 
     def __post_init__(self) -> None:
-        real = self.vertices.dtype.name in ("float32", "float64")
+        real = self.vertices.dtype.kind == "f" and self.vertices.dtype.itemsize in (4, 8)
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3 or not real:
             raise ValueError("vertices must be (v, 3) float32 or float64")
         if self.triangles.ndim != 2 or self.triangles.shape[1] != 3 or self.triangles.dtype != np.int32:

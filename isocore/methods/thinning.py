@@ -43,18 +43,19 @@ def _prepare_mesh(mesh: CellMesh, options: Options, outlook: Outlook) -> Extract
     index, ready, warnings = _index_of(mesh, outlook, options.threads)
     simplify = mesh_simplifier(mesh, options)
     with_edges, single = needs_edges(mesh, options, simplify), single_precision(mesh)
+    told = (*mesh_warnings(options), *warnings, *_oddities(index))
+    extrema, skeleton = index.extrema, index.skeleton_cells
 
     def extract(isovalue: float) -> Extraction:
         walked = ready.propagate(isovalue, options.threads, single, with_edges)
         search = Search(
             cells=mesh.cells,
-            extrema=index.extrema,
-            skeleton=index.skeleton_cells,
+            extrema=extrema,
+            skeleton=skeleton,
             seeds=walked.seeds,
             visited=walked.visited,
             intersected=walked.visited,
         )
-        told = (*mesh_warnings(options), *warnings, *_oddities(index))
         return mesh_surface(
             mesh, walked, isovalue, options, Findings(search=search), simplify=simplify, warnings=told
         )
