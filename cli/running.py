@@ -10,6 +10,7 @@ from time import perf_counter
 
 import click
 
+from isocore import _kernels
 from isocore.batches.run import Batch, run_jobs
 from isocore.errors import IsocoreError, one_line, printable
 from isocore.job import Job, Target
@@ -97,10 +98,13 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
     """
     warned = Warned()
     total = sum(len(job.targets) for job in jobs)
+    asked = _batch(jobs, options)
+    if not asked.workers:
+        _kernels.share_one_heap()
     with Progress(total, wanted=not (options.quiet or options.no_progress)) as progress:
         records = Records(jobs, options.reports, options.page_size, start, tell=progress.say)
         try:
-            for job, run in run_jobs(jobs, _batch(jobs, options), at=progress.at):
+            for job, run in run_jobs(jobs, asked, at=progress.at):
                 records.add(job, run)
                 warned.add(run)
                 progress.step()

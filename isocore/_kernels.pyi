@@ -376,6 +376,9 @@ class LabelSurfaces:
     def neighbours(self) -> npt.NDArray[np.uint32]: ...  # (n, 2) ranks that share a border, the higher first
     def shared(self) -> LabelMesh: ...
 
+# From now on all threads of this process take memory from one heap, so that what one frees is there for the others.
+def share_one_heap() -> None: ...
+
 # Moves the vertices of marching cubes, in index space, where they lie.
 def smooth_isosurface(vertices: _Real, triangles: _Int32, rounds: int, threads: int = 1) -> None: ...
 def label_surfaces(

@@ -12,6 +12,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 
+from isocore import _kernels
 from isocore.batches.frames import READY, receive, send
 from isocore.batches.one_job import guarded
 from isocore.job import Job
@@ -27,6 +28,7 @@ def work_until_stdin_ends(work: Callable[[Job], Iterator[RunReport]] = guarded) 
     for name in ("SIGINT", "SIGHUP"):  # they reach the parent too, which ends its workers in order
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
+    _kernels.share_one_heap()
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()

@@ -19,4 +19,5 @@ NB_MODULE(ISOCORE_MODULE, module) {
     isocore::python::bind_pieces(module);
     isocore::python::bind_labels(module);
     isocore::python::bind_simplification(module);
+    isocore::python::bind_memory(module);
 }

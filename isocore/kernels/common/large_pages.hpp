@@ -46,4 +46,13 @@ inline void return_freed_memory() {
 #endif
 }
 
+// From now on all threads take memory from one heap, but those that have one already. Else what a thread has freed
+// stays with its own heap, where it is of no use to others. For a process that is ours alone: this is for all of its
+// libraries.
+inline void share_one_heap() {
+#if defined(__GLIBC__)
+    static_cast<void>(mallopt(M_ARENA_MAX, 1));
+#endif
+}
+
 }  // namespace isocore

@@ -22,5 +22,6 @@ void bind_joining(nanobind::module_& module);
 void bind_pieces(nanobind::module_& module);
 void bind_labels(nanobind::module_& module);
 void bind_simplification(nanobind::module_& module);
+void bind_memory(nanobind::module_& module);
 
 }  // namespace isocore::python
