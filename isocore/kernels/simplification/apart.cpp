@@ -165,18 +165,19 @@ void Tally::add(const Tally& other) {
 }
 
 template <class Real>
-Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, float limit,
-                     const Options& options, Mesh<Real>& mesh) {
+Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, std::optional<CellIndex> by_cubes,
+                     float limit, const Options& options, Mesh<Real>& mesh) {
     std::vector<Remains> parts;
     Tally tally;
-    if (input.is_same(reference.mesh())) {
+    if (!by_cubes) {
         // A triangle of the reference that ends where a cell begins is entered in the one before.
         const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0, 1};
         tally = contract_boxes<Real>(whole, nullptr, reference, limit, options, parts);
     } else {
         const Cubes cubes(reference.cells(), options.rounding);
-        const FirstWitnesses witnesses = find_witnesses(input, cubes, index_by_cubes(input, cubes), reference.mesh(),
-                                                        mesh.stretch(), limit, options.threads);
+        const FirstWitnesses witnesses =
+            find_witnesses(input, cubes, *by_cubes, reference.mesh(), mesh.stretch(), limit, options.threads);
+        by_cubes.reset();
         return_freed_memory();
         const CellIndex index = index_by_boxes(input, reference.cells());
         const IndexedMesh<Real> whole{input, reference.cells(), index, kBoxBits, 0};
@@ -188,8 +189,9 @@ Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& refer
     return tally;
 }
 
-template Tally contract_apart(const MeshArrays<float>&, const Reference<float>&, float, const Options&, Mesh<float>&);
-template Tally contract_apart(const MeshArrays<double>&, const Reference<double>&, float, const Options&,
-                              Mesh<double>&);
+template Tally contract_apart(const MeshArrays<float>&, const Reference<float>&, std::optional<CellIndex>, float,
+                              const Options&, Mesh<float>&);
+template Tally contract_apart(const MeshArrays<double>&, const Reference<double>&, std::optional<CellIndex>, float,
+                              const Options&, Mesh<double>&);
 
 }  // namespace isocore::simplification

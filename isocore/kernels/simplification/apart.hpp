@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "simplification/reference.hpp"
@@ -19,10 +20,10 @@ struct Tally {
     void add(const Tally& other);
 };
 
-// Contracts what can be in the boxes that are not shifted; what is left becomes the mesh, which is empty. limit: the
-// bound, in stretched coordinates.
+// Contracts what can be in the boxes that are not shifted; what is left becomes the mesh, which is empty. by_cubes: the
+// input's triangles, where it is not its own reference. limit: the bound, in stretched coordinates.
 template <class Real>
-Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, float limit,
-                     const Options& options, Mesh<Real>& mesh);
+Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& reference, std::optional<CellIndex> by_cubes,
+                     float limit, const Options& options, Mesh<Real>& mesh);
 
 }  // namespace isocore::simplification

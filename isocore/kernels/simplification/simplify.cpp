@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -52,8 +53,14 @@ class Simplification {
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
           mesh_(options.stretch, options.rounding) {
         if (goes_apart(input, options)) {
-            reference_ = std::make_unique<Reference<Real>>(reference, cells_);
-            tally_ = contract_apart(input, *reference_, limit_, options, mesh_);
+            std::optional<CellIndex> by_cubes;
+            parallel_for(options.threads, input.is_same(reference) ? 1 : 2, [&](std::size_t n) {
+                if (n == 0)
+                    reference_ = std::make_unique<Reference<Real>>(reference, cells_);
+                else
+                    by_cubes = index_by_cubes(input, Cubes(cells_, options.rounding));
+            });
+            tally_ = contract_apart(input, *reference_, std::move(by_cubes), limit_, options, mesh_);
             first_phase_ = 1;
         } else {
             take_all(reference);
