@@ -86,24 +86,32 @@ class Propagation {
         number_vertices(lot);
     }
 
-    // Numbers the vertices of the edges that are the lot's own, and lists the others.
+    // Numbers the vertices of the edges that are the lot's own, and lists the others. Which edges are is unpredictable,
+    // so there is no branch on it: every edge is listed as if it were another's.
     void number_vertices(size_t lot) {
         Drawn& out = drawn(lot);
-        const size_t edges = out.edges.size();
-        out.vertex_of.resize(edges);
+        const EdgeTable& edges = out.edges;
+        const size_t size = edges.size();
+        out.vertex_of.resize(size);
+        out.abroad.resize(size);
         uint32_t* const vertex_of = out.vertex_of.data();
+        EdgeAbroad* const abroad = out.abroad.data();
         const int32_t end = lots_[lot + 1].point;
-        uint32_t vertices = 0;
-        for (size_t place = 0; place < edges; ++place) {
-            const int32_t point = low_point(out.edges[place]);
-            vertex_of[place] = vertices;
-            vertices += point < end;
-            if (point < end) continue;
-            size_t owner = lot + 1;  // mostly
-            while (lots_[owner + 1].point <= point) ++owner;
-            out.abroad.push_back({static_cast<uint32_t>(place), static_cast<uint32_t>(owner)});
+        uint32_t count = 0;
+        for (uint32_t place = 0; place < size; ++place) {
+            vertex_of[place] = place - count;
+            abroad[count].place = place;
+            count += low_point(edges[place]) >= end;
         }
-        out.vertices = vertices;
+        out.abroad.resize(count);
+        for (EdgeAbroad& edge : out.abroad) edge.lot = owner_of(low_point(edges[edge.place]), lot + 1);
+        out.vertices = static_cast<uint32_t>(size) - count;
+    }
+
+    // Whose range of points has a point, which is not before that of lot `first`: mostly that one's.
+    uint32_t owner_of(int32_t point, size_t first) const {
+        while (lots_[first + 1].point <= point) ++first;
+        return static_cast<uint32_t>(first);
     }
 
     void make_room(bool with_edges) {
