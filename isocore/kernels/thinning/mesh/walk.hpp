@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -75,12 +76,13 @@ class Walk {
         if (scratch_.queues.size() < crew.size()) scratch_.queues.resize(crew.size());
         SharedCells shared;
         shared.give(std::move(seeds));
+        std::atomic<std::size_t> visits{0};
         crew.together([&](std::size_t member) {
             shared.take_turns([&](const Array<std::int32_t>& lot) {
-                follow(lot, scratch_.queues[member], crew.size() == 1 ? nullptr : &shared);
+                visits += follow(lot, scratch_.queues[member], crew.size() == 1 ? nullptr : &shared);
             });
         });
-        collect(crew);
+        collect(crew, visits);
     }
 
     std::size_t seeds() const { return seeds_; }
@@ -98,7 +100,8 @@ class Walk {
     static constexpr std::size_t kSteps = 64;  // between two looks at whether others want cells
 
     // Walks from the cells of a lot; breadth first, so that it is known well ahead which records will be needed.
-    void follow(const Array<std::int32_t>& lot, Array<std::int32_t>& queue, SharedCells* shared) {
+    // Returns how many cells it visits.
+    std::size_t follow(const Array<std::int32_t>& lot, Array<std::int32_t>& queue, SharedCells* shared) {
         std::size_t head = 0, count = lot.size();
         queue.resize(std::max(queue.size(), count));
         std::copy(lot.begin(), lot.end(), queue.begin());
@@ -112,6 +115,7 @@ class Walk {
             shared->give({queue.data() + kept, queue.data() + count});
             count = kept;
         }
+        return count;
     }
 
     // Where some steps lead to.
@@ -154,20 +158,25 @@ class Walk {
         }
     }
 
-    // Lists the visited cells, ascending, and their signs.
-    void collect(Crew& crew) {
+    // Lists the visited cells, ascending, and their signs. Visits are more than cells where threads have met.
+    void collect(Crew& crew, std::size_t visits) {
+        scratch_.cells.resize(std::max(scratch_.cells.size(), visits));
+        scratch_.signs.resize(std::max(scratch_.signs.size(), visits));
         Marks& marks = scratch_.marks;
+        if (crew.size() == 1) {  // then no chunk need be counted before it is listed
+            for (std::size_t chunk = 0; chunk < marks.chunks(); ++chunk) size_ = collect(chunk, size_);
+            return;
+        }
         std::vector<std::size_t> first(marks.chunks() + 1);
         crew.share(marks.chunks(), [&](std::size_t, std::size_t chunk) { first[chunk + 1] = marks.count(chunk); });
         std::partial_sum(first.begin(), first.end(), first.begin());
         size_ = first.back();
-        scratch_.cells.resize(std::max(scratch_.cells.size(), size_));
-        scratch_.signs.resize(std::max(scratch_.signs.size(), size_));
         crew.share(marks.chunks(), [&](std::size_t, std::size_t chunk) { collect(chunk, first[chunk]); });
     }
 
-    // Lists those of a chunk. Where threads have lost a cell's signs, they are found anew.
-    void collect(std::size_t chunk, std::size_t first) {
+    // Lists those of a chunk, and returns where those of the next one begin. Where threads have lost a cell's signs,
+    // they are found anew.
+    std::size_t collect(std::size_t chunk, std::size_t first) {
         std::int32_t* cells = scratch_.cells.data() + first;
         std::uint8_t* signs = scratch_.signs.data() + first;
         scratch_.marks.take(chunk, [&](std::size_t base, const auto& marks, std::uint64_t visited) {
@@ -179,6 +188,7 @@ class Walk {
                 *signs++ = mark != Marks::kFound ? mark : static_cast<std::uint8_t>(met_.signs(cell));
             }
         });
+        return static_cast<std::size_t>(cells - scratch_.cells.data());
     }
 
     const PartView& part_;
