@@ -21,8 +21,9 @@ class Drawing {
     Drawing(const mesh::Field<Value>& field, double isovalue, const Walk<Cell, Value>& walk)
         : pen_(field, isovalue), walk_(walk) {}
 
-    // Draws the visited cells from the first on, as far as the end; their edges join those of the lot.
-    void draw(std::size_t first, std::size_t end, Drawn& lot) const {
+    // Draws the visited cells from the first on, as far as the end; their edges join those of the lot, which the table
+    // finds.
+    void draw(std::size_t first, std::size_t end, Drawn& lot, EdgeTable& table) const {
         const std::size_t before = lot.triangles.size();
         lot.triangles.resize(before + Pen::kMostCorners * (end - first));
         std::uint32_t* out = lot.triangles.data() + before;
@@ -30,7 +31,7 @@ class Drawing {
         for (std::size_t next; first < end; first = next) {
             next = std::min(end, first + kBatch);
             const std::size_t edges = list_edges(first, next, batch);
-            lot.edges.place(batch.edges.data(), edges, batch.places.data());
+            table.place(batch.edges.data(), edges, batch.places.data(), lot.edges);
             out = list_triangles(first, next, batch, out, lot);
         }
         lot.triangles.resize(static_cast<std::size_t>(out - lot.triangles.data()));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -23,24 +24,48 @@ inline EdgeKey edge_key(std::int32_t a, std::int32_t b) {
 inline std::int32_t low_point(EdgeKey edge) { return static_cast<std::int32_t>(edge >> 32); }
 inline std::int32_t high_point(EdgeKey edge) { return static_cast<std::int32_t>(edge); }
 
-class EdgeTable {
+// Edges in the order in which they were first seen.
+class EdgeList {
   public:
-    // Empties the table and makes room for about so many edges; it grows where there are many more. Whether a search
-    // must go on to another slot is unpredictable, so hardly one ever must.
-    void start(std::size_t expected) {
-        clear(std::bit_ceil(8 * expected + 1));
-        count_ = 0;
-    }
-
-    // Writes the place of each edge among those seen so far, where a new edge gets the next one.
-    void place(const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
-        while (2 * (count_ + size) > slots_) grow();
-        edges_.resize(std::max(edges_.size(), count_ + size + 2));
-        slots_ <= kMostNarrow ? place(narrow_.data(), edges, size, out) : place(wide_.data(), edges, size, out);
-    }
-
     std::size_t size() const { return count_; }
     EdgeKey operator[](std::size_t place) const { return edges_[place + 1]; }
+
+    void push_back(EdgeKey edge) {
+        make_room(1);
+        edges_[++count_] = edge;
+    }
+
+  private:
+    friend class EdgeTable;
+    void make_room(std::size_t more) { edges_.resize(std::max(edges_.size(), count_ + more + 2)); }
+
+    Array<EdgeKey> edges_;  // the one that is searched for, then those seen
+    std::uint32_t count_ = 0;
+};
+
+// Finds edges in one list at a time. A thread keeps its table from one list to the next, and so in its cache.
+class EdgeTable {
+  public:
+    // Empties the table and the list, and makes room for about so many edges; it grows where there are many more.
+    // Whether a search must go on to another slot is unpredictable, so hardly one ever must.
+    void start(std::size_t expected, EdgeList& list) {
+        clear(std::bit_ceil(16 * expected + 1));
+        list.count_ = 0;
+    }
+
+    // Writes the place of each edge among those of the list, where a new edge gets the next one.
+    void place(const EdgeKey* edges, std::size_t size, std::uint32_t* out, EdgeList& list) {
+        while (2 * (list.count_ + size) > slots_) grow(list);
+        list.make_room(size);
+        with_slots([&](auto* slots) { place(slots, edges, size, out, list); });
+    }
+
+    // Calls visit(place among the others, place in the list) for those of the other edges that are in the list.
+    template <class Visit>
+    void match(const EdgeList& others, EdgeList& list, const Visit& visit) {
+        list.make_room(0);
+        with_slots([&](auto* slots) { match(slots, others, list, visit); });
+    }
 
   private:
     // Half of so many places can be told in 16 bits. Slots of 16 bits take half of the cache.
@@ -55,6 +80,11 @@ class EdgeTable {
         int shift;
     };
 
+    template <class Work>
+    void with_slots(const Work& work) {
+        slots_ <= kMostNarrow ? work(narrow_.data()) : work(wide_.data());
+    }
+
     void clear(std::size_t slots) {
         slots_ = slots;
         slots <= kMostNarrow ? narrow_.assign(slots, 0) : wide_.assign(slots, 0);
@@ -64,9 +94,9 @@ class EdgeTable {
     // condition. Whether an edge is new is unpredictable, so there is no branch on it: every edge is written as if it
     // were.
     template <class Slot>
-    void place(Slot* slots, const EdgeKey* edges, std::size_t size, std::uint32_t* out) {
-        EdgeKey *const seen = edges_.data(), &wanted = seen[0];
-        std::uint32_t count = count_;
+    void place(Slot* slots, const EdgeKey* edges, std::size_t size, std::uint32_t* out, EdgeList& list) const {
+        EdgeKey *const seen = list.edges_.data(), &wanted = seen[0];
+        std::uint32_t count = list.count_;
         const Slots slot_of(slots_);
         for (std::size_t n = 0; n < size; ++n) {
             const EdgeKey edge = wanted = edges[n];
@@ -82,19 +112,41 @@ class EdgeTable {
             count += fresh;
             out[n] = place - 1;
         }
-        count_ = count;
+        list.count_ = count;
     }
 
-    void grow() {
+    // Most of the others lead to empty slots. Which do is unpredictable, so they are told apart first, some at a time.
+    template <class Slot, class Visit>
+    void match(const Slot* slots, const EdgeList& others, EdgeList& list, const Visit& visit) const {
+        constexpr std::size_t kSome = 256;
+        std::array<std::size_t, kSome> candidates;
+        EdgeKey *const seen = list.edges_.data(), &wanted = seen[0];
+        const Slots slot_of(slots_);
+        for (std::size_t first = 0; first < others.size(); first += kSome) {
+            std::size_t count = 0;
+            for (std::size_t place = first, end = std::min(others.size(), first + kSome); place < end; ++place) {
+                candidates[count] = place;
+                count += slots[slot_of.first(others[place])] != 0;
+            }
+            for (std::size_t n = 0; n < count; ++n) {
+                const EdgeKey edge = wanted = others[candidates[n]];
+                std::size_t slot = slot_of.first(edge);
+                while (seen[slots[slot]] != edge) slot = slot_of.next(slot);
+                if (slots[slot] != 0) visit(candidates[n], std::size_t{slots[slot]} - 1);
+            }
+        }
+    }
+
+    void grow(const EdgeList& list) {
         clear(2 * slots_);
-        slots_ <= kMostNarrow ? place_again(narrow_.data()) : place_again(wide_.data());
+        with_slots([&](auto* slots) { place_again(slots, list); });
     }
 
     template <class Slot>
-    void place_again(Slot* slots) const {
+    void place_again(Slot* slots, const EdgeList& list) const {
         const Slots slot_of(slots_);
-        for (std::uint32_t place = 1; place <= count_; ++place) {
-            std::size_t slot = slot_of.first(edges_[place]);
+        for (std::uint32_t place = 1; place <= list.count_; ++place) {
+            std::size_t slot = slot_of.first(list.edges_[place]);
             while (slots[slot] != 0) slot = slot_of.next(slot);
             slots[slot] = static_cast<Slot>(place);
         }
@@ -103,8 +155,6 @@ class EdgeTable {
     Array<std::uint16_t> narrow_;  // places from 1 on, or 0; in use where there are few slots
     Array<std::uint32_t> wide_;    // the same for many
     std::size_t slots_ = 0;
-    Array<EdgeKey> edges_;  // the one that is searched for, then those seen
-    std::uint32_t count_ = 0;
 };
 
 }  // namespace isocore::thinning

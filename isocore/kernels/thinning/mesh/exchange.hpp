@@ -33,16 +33,23 @@ class Exchange {
     }
 
     // Answers with the number of each vertex among the lot's own. Those that the lot has not seen itself come last.
-    void answer(std::size_t lot, Drawn& owner) const {
-        const std::size_t first = first_[lot], count = first_[lot + 1] - first, seen = owner.edges.size();
+    void answer(std::size_t lot, Drawn& owner, EdgeTable& table) const {
+        constexpr std::uint32_t kUnseen = 0xffffffff;
+        const std::size_t first = first_[lot], count = first_[lot + 1] - first;
+        if (count == 0) return;
+        EdgeList asked;
         Array<std::uint32_t> places(count);
-        owner.edges.place(edges_.data() + first, count, places.data());
-        for (std::size_t n = 0; n < count; ++n) {
-            const std::size_t place = places[n];
-            *answers_[first + n] =
-                place < seen ? owner.vertex_of[place] : owner.vertices + static_cast<std::uint32_t>(place - seen);
+        table.start(count, asked);
+        table.place(edges_.data() + first, count, places.data(), asked);
+        std::vector<std::uint32_t> number(asked.size(), kUnseen);
+        table.match(owner.edges, asked,
+                    [&](std::size_t place, std::size_t question) { number[question] = owner.vertex_of[place]; });
+        for (std::size_t question = 0; question < asked.size(); ++question) {
+            if (number[question] != kUnseen) continue;
+            number[question] = owner.vertices++;
+            owner.edges.push_back(asked[question]);
         }
-        owner.vertices += static_cast<std::uint32_t>(owner.edges.size() - seen);
+        for (std::size_t n = 0; n < count; ++n) *answers_[first + n] = number[places[n]];
     }
 
   private:

@@ -53,12 +53,13 @@ class Propagation {
         hexes_.run(crew_);
         lots_ = cut_into_lots(tets_, hexes_);
         if (scratch_.drawn.size() < lots()) scratch_.drawn.resize(lots());
-        for_lots([&](size_t lot) { draw(lot); });
+        if (scratch_.tables.size() < crew_.size()) scratch_.tables.resize(crew_.size());
+        for_lots([&](size_t lot, EdgeTable& table) { draw(lot, table); });
         const Exchange exchange(scratch_.drawn, lots());
-        for_lots([&](size_t lot) { exchange.answer(lot, drawn(lot)); });
+        for_lots([&](size_t lot, EdgeTable& table) { exchange.answer(lot, drawn(lot), table); });
         make_room(with_edges);
-        for_lots([&](size_t lot) { join(lot); });
-        if (mesh_.vertices.size() > 3 * on_edges_) for_lots([&](size_t lot) { place_middles(lot); });
+        for_lots([&](size_t lot, EdgeTable&) { join(lot); });
+        if (mesh_.vertices.size() > 3 * on_edges_) for_lots([&](size_t lot, EdgeTable&) { place_middles(lot); });
         if (tets_.met_collapsed() || hexes_.met_collapsed()) drop_collapsed(mesh_.triangles);
         mesh_.seeds = tets_.seeds() + hexes_.seeds();
         mesh_.visited = tets_.size() + hexes_.size();
@@ -69,20 +70,21 @@ class Propagation {
     size_t lots() const { return lots_.size() - 1; }
     Drawn& drawn(size_t lot) { return scratch_.drawn[lot]; }
 
+    // Calls work(lot, the thread's table).
     template <class Work>
     void for_lots(const Work& work) {
-        crew_.share(lots(), [&](size_t, size_t lot) { work(lot); });
+        crew_.share(lots(), [&](size_t member, size_t lot) { work(lot, scratch_.tables[member]); });
     }
 
-    void draw(size_t lot) {
+    void draw(size_t lot, EdgeTable& table) {
         const Lot &begin = lots_[lot], &end = lots_[lot + 1];
         Drawn& out = drawn(lot);
         out.triangles.clear();
         out.middles.clear();
         out.abroad.clear();
-        out.edges.start(end.tet - begin.tet + 2 * (end.hex - begin.hex));
-        Drawing<Tet, Value>(field_, isovalue_, tets_).draw(begin.tet, end.tet, out);
-        Drawing<Hex, Value>(field_, isovalue_, hexes_).draw(begin.hex, end.hex, out);
+        table.start(end.tet - begin.tet + 2 * (end.hex - begin.hex), out.edges);
+        Drawing<Tet, Value>(field_, isovalue_, tets_).draw(begin.tet, end.tet, out, table);
+        Drawing<Hex, Value>(field_, isovalue_, hexes_).draw(begin.hex, end.hex, out, table);
         number_vertices(lot);
     }
 
@@ -90,7 +92,7 @@ class Propagation {
     // so there is no branch on it: every edge is listed as if it were another's.
     void number_vertices(size_t lot) {
         Drawn& out = drawn(lot);
-        const EdgeTable& edges = out.edges;
+        const EdgeList& edges = out.edges;
         const size_t size = edges.size();
         out.vertex_of.resize(size);
         out.abroad.resize(size);
@@ -192,7 +194,7 @@ class Propagation {
         }
     }
 
-    void write_edges(const EdgeTable& edges, size_t place, size_t end, int32_t* out) const {
+    void write_edges(const EdgeList& edges, size_t place, size_t end, int32_t* out) const {
         for (; place < end; ++place) {
             const int32_t a = index_.points[low_point(edges[place])], b = index_.points[high_point(edges[place])];
             *out++ = std::min(a, b);

@@ -33,7 +33,7 @@ struct EdgeAbroad {
 // loops.
 struct Drawn {
     static constexpr std::uint32_t kMiddles = std::uint32_t{1} << 31;
-    EdgeTable edges;                 // as they were first seen; then those that only other lots have seen
+    EdgeList edges;                  // as they were first seen; then those that only other lots have seen
     Array<std::uint32_t> vertex_of;  // by place: the edge's vertex among those of its lot
     std::uint32_t vertices;          // its own
     Array<EdgeAbroad> abroad;        // the edges that are other lots', ascending
@@ -43,7 +43,8 @@ struct Drawn {
 
 struct Scratch {
     WalkScratch tets, hexes;
-    std::vector<Drawn> drawn;  // by lot
+    std::vector<EdgeTable> tables;  // of every thread
+    std::vector<Drawn> drawn;       // by lot
 };
 
 // Scratch memory for as many propagations as run at once.
