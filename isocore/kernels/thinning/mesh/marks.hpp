@@ -91,16 +91,14 @@ class Marks {
   private:
     static constexpr std::size_t kGroups = 512;  // in a chunk
 
-    // Calls visit(group) for those with signs, ascending. Most have none, and eight of them are passed over at once.
+    // Calls visit(group) for those with signs, ascending. Most have none, and eight of them are passed over at once;
+    // the first one's byte is the lowest.
     template <class Visit>
     void for_groups(std::size_t chunk, const Visit& visit) const {
         for (std::size_t first = kGroups * chunk; first < kGroups * (chunk + 1); first += 8) {
             std::uint64_t eight;
             std::memcpy(&eight, static_cast<const void*>(groups_.get() + first), 8);
-            if (eight == 0) continue;
-            for (std::size_t group = first; group < first + 8; ++group) {
-                if (groups_[group].load(std::memory_order_relaxed) != 0) visit(group);
-            }
+            for (; eight != 0; eight &= eight - 1) visit(first + static_cast<std::size_t>(std::countr_zero(eight)) / 8);
         }
     }
 

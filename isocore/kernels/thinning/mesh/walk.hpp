@@ -177,9 +177,10 @@ class Walk {
     // Lists those of a chunk, and returns where those of the next one begin. Where threads have lost a cell's signs,
     // they are found anew.
     std::size_t collect(std::size_t chunk, std::size_t first) {
-        std::int32_t* cells = scratch_.cells.data() + first;
-        std::uint8_t* signs = scratch_.signs.data() + first;
         scratch_.marks.take(chunk, [&](std::size_t base, const auto& marks, std::uint64_t visited) {
+            std::int32_t* cells = scratch_.cells.data() + first;  // pointers that stay in registers
+            std::uint8_t* signs = scratch_.signs.data() + first;
+            first += static_cast<std::size_t>(std::popcount(visited));
             for (; visited != 0; visited &= visited - 1) {
                 const auto place = static_cast<std::size_t>(std::countr_zero(visited));
                 const auto cell = static_cast<std::int32_t>(base + place);
@@ -188,7 +189,7 @@ class Walk {
                 *signs++ = mark != Marks::kFound ? mark : static_cast<std::uint8_t>(met_.signs(cell));
             }
         });
-        return static_cast<std::size_t>(cells - scratch_.cells.data());
+        return first;
     }
 
     const PartView& part_;
