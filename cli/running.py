@@ -10,11 +10,10 @@ from time import perf_counter
 
 import click
 
-from isocore import _kernels
 from isocore.batches.run import Batch, run_jobs
 from isocore.errors import IsocoreError, one_line, printable
 from isocore.job import Job, Target
-from isocore.memory import free_bytes
+from isocore.memory import free_bytes, share_one_heap
 from isocore.report import BatchReport, RunReport, save_report
 from isocore.report.record import working_folder
 from isocore.whole_file import whole_file
@@ -100,7 +99,7 @@ def run_and_report(jobs: list[Job], options: ConvertOptions, start: float) -> tu
     total = sum(len(job.targets) for job in jobs)
     asked = _batch(jobs, options)
     if not asked.workers:
-        _kernels.share_one_heap()
+        share_one_heap()
     with Progress(total, wanted=not (options.quiet or options.no_progress)) as progress:
         records = Records(jobs, options.reports, options.page_size, start, tell=progress.say)
         try:

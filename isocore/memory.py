@@ -21,6 +21,16 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def share_one_heap() -> None:
+    """Let all threads take memory from one heap, so that what one of them frees is there for the others.
+
+    For a process of our own: it holds for all libraries in it. Nothing where the C library has no such setting.
+    """
+    from isocore import _kernels  # late: most of what asks for free memory needs none of it
+
+    _kernels.share_one_heap()
+
+
 def forget_peak() -> None:
     """Start the peak anew, so that each job of a process reports its own; does nothing where it cannot."""
     try:

@@ -12,10 +12,10 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 
-from isocore import _kernels
 from isocore.batches.frames import READY, receive, send
 from isocore.batches.one_job import guarded
 from isocore.job import Job
+from isocore.memory import share_one_heap
 from isocore.report.record import RunReport
 
 
@@ -28,7 +28,7 @@ def work_until_stdin_ends(work: Callable[[Job], Iterator[RunReport]] = guarded) 
     for name in ("SIGINT", "SIGHUP"):  # they reach the parent too, which ends its workers in order
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    _kernels.share_one_heap()
+    share_one_heap()
     replies = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     jobs: queue.SimpleQueue[Job] = queue.SimpleQueue()
