@@ -147,21 +147,22 @@ void a_table_numbers_edges_in_their_order_while_it_grows() {
     std::mt19937 random(4);
     std::uniform_int_distribution<std::int32_t> point(0, 40);
     thinning::EdgeTable table;
+    thinning::EdgeList list;
     for (int run = 0; run < 3; ++run) {  // nothing is left of the run before
-        table.start(1);
+        table.start(1, list);
         std::vector<thinning::EdgeKey> seen;
         for (int batch = 0; batch < 100; ++batch) {
             std::vector<thinning::EdgeKey> edges(7);
             for (auto& edge : edges) edge = thinning::edge_key(point(random), 41 + point(random));
             std::vector<std::uint32_t> places(edges.size());
-            table.place(edges.data(), edges.size(), places.data());
+            table.place(edges.data(), edges.size(), places.data(), list);
             for (std::size_t n = 0; n < edges.size(); ++n) {
                 const auto found = std::find(seen.begin(), seen.end(), edges[n]);
                 CHECK(places[n] == static_cast<std::size_t>(found - seen.begin()));
                 if (found == seen.end()) seen.push_back(edges[n]);
-                CHECK(table[places[n]] == edges[n]);
+                CHECK(list[places[n]] == edges[n]);
             }
-            CHECK(table.size() == seen.size());
+            CHECK(list.size() == seen.size());
         }
         CHECK(seen.size() > 300);
     }
@@ -172,15 +173,36 @@ void a_table_of_more_edges_than_16_bits_can_number() {
     std::vector<thinning::EdgeKey> edges(kEdges);
     for (std::int32_t n = 0; n < kEdges; ++n) edges[static_cast<std::size_t>(n)] = thinning::edge_key(n, n + 1);
     thinning::EdgeTable table;
+    thinning::EdgeList list;
     for (const std::size_t expected : {1, 4000, 70000}) {
-        table.start(expected);
+        table.start(expected, list);
         for (int run = 0; run < 2; ++run) {
             std::vector<std::uint32_t> places(edges.size());
-            table.place(edges.data(), edges.size(), places.data());
-            for (std::size_t n = 0; n < edges.size(); ++n) CHECK(places[n] == n && table[n] == edges[n]);
-            CHECK(table.size() == edges.size());
+            table.place(edges.data(), edges.size(), places.data(), list);
+            for (std::size_t n = 0; n < edges.size(); ++n) CHECK(places[n] == n && list[n] == edges[n]);
+            CHECK(list.size() == edges.size());
         }
     }
+}
+
+void a_table_matches_the_edges_that_another_list_has_too() {
+    std::mt19937 random(5);
+    std::uniform_int_distribution<std::int32_t> point(0, 60);
+    std::vector<thinning::EdgeKey> edges(900);
+    for (auto& edge : edges) edge = thinning::edge_key(point(random), 61 + point(random));
+    thinning::EdgeTable table;
+    thinning::EdgeList list, others;
+    table.start(edges.size(), list);
+    std::vector<std::uint32_t> places(edges.size());
+    table.place(edges.data(), edges.size(), places.data(), list);
+    for (int n = 0; n < 700; ++n) others.push_back(thinning::edge_key(point(random), 61 + point(random)));
+    std::size_t matched = 0, next = 0;
+    table.match(others, list, [&](std::size_t other, std::size_t place) {
+        for (; next < other; ++next) CHECK(std::find(edges.begin(), edges.end(), others[next]) == edges.end());
+        CHECK(next++ == other && others[other] == list[place]);
+        ++matched;
+    });
+    CHECK(matched > 50 && matched < others.size());
 }
 
 void triangles_of_a_tetrahedron_face_outside() {
@@ -240,6 +262,7 @@ void connectedness_is_that_of_corners_and_edges() {
 void test_thinning() {
     a_table_numbers_edges_in_their_order_while_it_grows();
     a_table_of_more_edges_than_16_bits_can_number();
+    a_table_matches_the_edges_that_another_list_has_too();
     triangles_of_a_tetrahedron_face_outside();
     no_hexahedron_draws_a_diagonal_in_a_face();
     connectedness_is_that_of_corners_and_edges();
