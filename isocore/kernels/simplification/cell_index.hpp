@@ -43,6 +43,7 @@ class CellIndex {
         if (shift > 0) bits |= occupied_[first / 64 + 1] << (64 - shift);
         return {bits & ((std::uint64_t{1} << count) - 1), starts_.data() + rank_of(first)};
     }
+    bool is_one_cell() const { return dims_[0] * dims_[1] * dims_[2] == 1; }
     // May a triangle have several entries?
     bool repeats() const { return repeats_; }
     // Is entry n triangle n?

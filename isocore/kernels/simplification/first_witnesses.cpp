@@ -86,7 +86,8 @@ class Nearest {
     // Most are found in the cube around the place, or in those that are no further away than what was found there.
     // Else within ever more; kNone if there are no triangles.
     std::int32_t find(float limit) {
-        bool is_all = look_within(0);
+        look_in_own_cube();
+        bool is_all = index_.is_one_cell();
         if (found_ != kNone && std::sqrt(best_) <= limit) {
             if (std::sqrt(best_) > std::min(kNearEnough, 0.25f * limit)) look_within(std::sqrt(best_));
             return found_;
@@ -101,6 +102,19 @@ class Nearest {
   private:
     static constexpr float kNearEnough = 0.125f;  // cells
 
+    void look_in_own_cube() {
+        low_ = cells_.at(place_.data());
+        for (std::int32_t& at : low_) at >>= Cubes::kBits;
+        high_ = low_;
+        look_in(low_);
+    }
+
+    void look_in(const Cell& cube) {
+        index_.each_run_between(cube, cube, [&](std::uint32_t first, std::uint32_t end) {
+            for (std::uint32_t n = first; n < end; ++n) look_at(index_.entry(n));
+        });
+    }
+
     // Looks at the cubes that are so near. Are these all?
     bool look_within(float reach) {
         Cell low{}, high{};
@@ -112,6 +126,7 @@ class Nearest {
             const std::size_t last = (cells_.dims[a] - 1) >> Cubes::kBits;
             is_all = is_all && low[a] == 0 && static_cast<std::size_t>(high[a]) == last;
         }
+        if (low == low_ && high == high_) return is_all;
         const auto is_seen = [&](const Cell& cube) {
             for (std::size_t a = 0; a < 3; ++a) {
                 if (cube[a] < low_[a] || cube[a] > high_[a]) return false;
@@ -122,10 +137,7 @@ class Nearest {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
                 for (std::int32_t i = low[0]; i <= high[0]; ++i) {
                     const Cell cube{i, j, k};
-                    if (is_seen(cube)) continue;
-                    index_.each_run_between(cube, cube, [&](std::uint32_t first, std::uint32_t end) {
-                        for (std::uint32_t n = first; n < end; ++n) look_at(index_.entry(n));
-                    });
+                    if (!is_seen(cube)) look_in(cube);
                 }
             }
         }

@@ -17,14 +17,15 @@ template <class Real>
 CellIndex Reference<Real>::index_of(const MeshArrays<Real>& mesh, const Cells& cells) {
     const auto each_entry = [&](const auto& visit) {
         for (std::size_t t = 0; t < mesh.triangle_count; ++t) {
+            const auto corner = [&](std::size_t n) {
+                return mesh.vertices + 3 * static_cast<std::size_t>(mesh.triangles[3 * t + n]);
+            };
+            const Real *const one = corner(0), *const two = corner(1), *const three = corner(2);
             Cell low, high;
             for (std::size_t a = 0; a < 3; ++a) {
-                std::array<double, 3> at;
-                for (std::size_t n = 0; n < 3; ++n)
-                    at[n] =
-                        static_cast<double>(mesh.vertices[3 * static_cast<std::size_t>(mesh.triangles[3 * t + n]) + a]);
-                const double least = cells.in_cells(std::min({at[0], at[1], at[2]}), a);
-                const double most = cells.in_cells(std::max({at[0], at[1], at[2]}), a);
+                const auto in_cells = [&](Real at) { return cells.in_cells(static_cast<double>(at), a); };
+                const double least = in_cells(std::min({one[a], two[a], three[a]}));
+                const double most = in_cells(std::max({one[a], two[a], three[a]}));
                 low[a] = cells.clamped(least, a);
                 high[a] = cells.clamped(most, a);
                 if (high[a] > low[a] && static_cast<double>(high[a]) == most) --high[a];
