@@ -63,8 +63,7 @@ template <class Sample>
 double crossing(Sample a, Sample b, double isovalue) {
     const double fa = static_cast<double>(a), fb = static_cast<double>(b), across = fb - fa;
     if constexpr (std::is_floating_point_v<Sample>) {
-        if (!std::isfinite(
-                across)) {  // as it is iff both samples are finite and not too far apart, which doubles can be
+        if (!std::isfinite(across)) {  // so a sample is not finite, or doubles are too far apart
             if (!std::isfinite(a) || !std::isfinite(b)) return 0.5;
             return crossing(fa / 4, fb / 4, isovalue / 4);
         }

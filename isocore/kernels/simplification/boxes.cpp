@@ -71,14 +71,10 @@ class BoxFinder {
             if (triangle.is_gone()) continue;
             Cell low, high;
             find_boxes_of(triangle, low, high);
-            for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-                for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-                    for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-                        MeshBox& box = boxes[number_of({i, j, k}, dims_)];
-                        if (!box.vertices.empty()) box.triangles.push_back(static_cast<std::int32_t>(t));
-                    }
-                }
-            }
+            each_cell_between(low, high, [&](const Cell& at) {
+                MeshBox& box = boxes[number_of(at, dims_)];
+                if (!box.vertices.empty()) box.triangles.push_back(static_cast<std::int32_t>(t));
+            });
         }
     }
 
@@ -96,19 +92,16 @@ class BoxFinder {
     }
 
     void find_cells(std::vector<MeshBox>& boxes) const {
-        Cell at;
-        for (at[2] = 0; at[2] < static_cast<std::int32_t>(dims_[2]); ++at[2]) {
-            for (at[1] = 0; at[1] < static_cast<std::int32_t>(dims_[1]); ++at[1]) {
-                for (at[0] = 0; at[0] < static_cast<std::int32_t>(dims_[0]); ++at[0]) {
-                    MeshBox& box = boxes[number_of(at, dims_)];
-                    for (std::size_t a = 0; a < 3; ++a) {
-                        const std::int32_t begin = at[a] * kBoxCells - shift_[a];
-                        box.low[a] = std::max(begin, 0);
-                        box.high[a] = std::min(begin + kBoxCells, static_cast<std::int32_t>(cells_.dims[a])) - 1;
-                    }
-                }
+        Cell last;
+        for (std::size_t a = 0; a < 3; ++a) last[a] = static_cast<std::int32_t>(dims_[a] - 1);
+        each_cell_between({0, 0, 0}, last, [&](const Cell& at) {
+            MeshBox& box = boxes[number_of(at, dims_)];
+            for (std::size_t a = 0; a < 3; ++a) {
+                const std::int32_t begin = at[a] * kBoxCells - shift_[a];
+                box.low[a] = std::max(begin, 0);
+                box.high[a] = std::min(begin + kBoxCells, static_cast<std::int32_t>(cells_.dims[a])) - 1;
             }
-        }
+        });
     }
 
     Mesh<Real>& mesh_;

@@ -23,6 +23,16 @@ inline std::size_t number_of(const Cell& cell, const std::array<std::size_t, 3>&
            dims[0] * (static_cast<std::size_t>(cell[1]) + dims[1] * static_cast<std::size_t>(cell[2]));
 }
 
+// visit(cell) of each from `low` to `high`, both included: row by row, layer by layer.
+template <class Visit>
+void each_cell_between(const Cell& low, const Cell& high, const Visit& visit) {
+    for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+            for (std::int32_t i = low[0]; i <= high[0]; ++i) visit(Cell{i, j, k});
+        }
+    }
+}
+
 struct Cells {
     std::array<double, 3> origin{0, 0, 0};  // the low corner of cell 0, 0, 0
     double per_cell = 1;                    // from coordinates to cells

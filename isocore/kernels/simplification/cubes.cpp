@@ -25,11 +25,7 @@ void Cubes::touched(const std::array<const std::array<Real, 3>*, 3>& corners, st
         axes += low[a] < high[a] ? 1 : 0;
     }
     if (axes > 1) return touched_by_plane(corners, low, high, out);
-    for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-        for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-            for (std::int32_t i = low[0]; i <= high[0]; ++i) out.push_back(number({i, j, k}));
-        }
-    }
+    each_cell_between(low, high, [&](const Cell& cube) { out.push_back(number(cube)); });
 }
 
 // Those from `low` to `high` that the triangle's plane passes through.

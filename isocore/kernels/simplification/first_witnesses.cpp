@@ -133,14 +133,9 @@ class Nearest {
             }
             return true;
         };
-        for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-                for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-                    const Cell cube{i, j, k};
-                    if (!is_seen(cube)) look_in(cube);
-                }
-            }
-        }
+        each_cell_between(low, high, [&](const Cell& cube) {
+            if (!is_seen(cube)) look_in(cube);
+        });
         low_ = low;
         high_ = high;
         return is_all;

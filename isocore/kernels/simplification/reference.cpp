@@ -30,12 +30,8 @@ CellIndex Reference<Real>::index_of(const MeshArrays<Real>& mesh, const Cells& c
                 high[a] = cells.clamped(most, a);
                 if (high[a] > low[a] && static_cast<double>(high[a]) == most) --high[a];
             }
-            for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-                for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-                    for (std::int32_t i = low[0]; i <= high[0]; ++i)
-                        visit(static_cast<std::int32_t>(t), cells.number({i, j, k}));
-                }
-            }
+            each_cell_between(low, high,
+                              [&](const Cell& cell) { visit(static_cast<std::int32_t>(t), cells.number(cell)); });
         }
     };
     return CellIndex(cells.dims, mesh.triangle_count, each_entry);

@@ -131,10 +131,9 @@ class Simplification {
     };
 
     void take_all(const MeshArrays<Real>& reference) {
-        const bool is_own = input_.vertices == reference.vertices;
+        const bool is_own = input_.is_same(reference);
         // Witnesses come behind the vertices, without a copy of these; room that stays empty takes no memory.
         if (!is_own) mesh_.places.reserve(input_.vertex_count + reference.vertex_count);
-        FirstWitnesses witnesses;
         parallel_for(options_.threads, 2, [&](std::size_t n) {  // two that know nothing of each other
             if (n == 0)
                 mesh_.take_all(input_, cells_, options_.threads);
@@ -143,8 +142,8 @@ class Simplification {
         });
         if (!is_own) {
             const Cubes cubes(cells_, options_.rounding);
-            witnesses = find_witnesses(input_, cubes, index_by_cubes(input_, cubes), reference, mesh_.stretch(), limit_,
-                                       options_.threads);
+            const FirstWitnesses witnesses = find_witnesses(input_, cubes, index_by_cubes(input_, cubes), reference,
+                                                            mesh_.stretch(), limit_, options_.threads);
             mesh_.take_witnesses(input_, reference, witnesses, 0);
         }
         return_freed_memory();
