@@ -83,6 +83,13 @@ class SimplifiedMesh(NamedTuple):
     error_other: tuple[float, float, float]  # the same, in coordinates times `other`
     back_max: float  # no point of the surface, but for those triangles, lies further from the reference
 
+# How vertices are written: through affine (3, 4), rounded to float32 or float64. rounding: how far that moves one along
+# each axis at most, once it is brought back.
+class Writing:
+    def __init__(self, affine: _Float64, is_single: bool, rounding: float) -> None: ...
+    @property
+    def rounding(self) -> float: ...
+
 def simplify(
     vertices: _Real,
     triangles: _Int32,
@@ -93,8 +100,7 @@ def simplify(
     other: tuple[float, float, float] = ...,
     cell: float = 1.0,
     most_triangles: int = 0,
-    written: _Float64 | None = None,
-    rounding: float = 0.0,
+    writing: Writing | None = None,
     threads: int = 1,
 ) -> SimplifiedMesh: ...
 
@@ -371,6 +377,7 @@ class LabelSurfaces:
         stretch: tuple[float, float, float] = ...,
         other: tuple[float, float, float] = ...,
         most_triangles: int = 0,
+        writing: Writing | None = None,
         threads: int = 1,
     ) -> SimplifiedLabels: ...
     def neighbours(self) -> npt.NDArray[np.uint32]: ...  # (n, 2) ranks that share a border, the higher first

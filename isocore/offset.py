@@ -20,7 +20,8 @@ from isocore.cell_mesh import CellMesh
 from isocore.choices import About
 from isocore.extraction import Field
 from isocore.late import late
-from isocore.surface import Point, Surface, coordinate_type
+from isocore.placing import coordinate_type
+from isocore.surface import Point, Surface
 from isocore.volume import Volume
 
 #: Whether float32 will do for a mesh: its methods are not imported where a volume is read.

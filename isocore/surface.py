@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from isocore import _kernels, exchange
+from isocore.placing import coordinate_type
 from isocore.volume import Space
 
 if TYPE_CHECKING:
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
     import trimesh
 
 Point = tuple[float, float, float]
-
-# float32 is enough while its steps are below this part of the shortest voxel edge: half of the distance
-# that vertices keep from grid points, so that no two fall together, whichever way the affine turns them.
-_COARSEST_STEP = 2.0**-11
 
 
 class Part(NamedTuple):
@@ -186,14 +183,15 @@ def place_fresh(
     space: Space,
     unit: str,
     threads: int = 1,
+    dtype: type | None = None,
 ) -> Surface:
     """As `Surface.placed`, on arrays nobody else holds: they are changed where they lie if they can be.
 
     vertices: (v, 3) float32 or float64; triangles: (t, 3) int32; normals: (v, 3) float32 or None, all in the
-    frame that `affine` (4, 4) starts from.
+    frame that `affine` (4, 4) starts from. dtype: what the vertices shall be; as `coordinate_type` says, if not given.
     """
     rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
-    dtype = coordinate_type(vertices, rows)
+    dtype = dtype or coordinate_type(vertices, rows)
     fits = vertices.dtype == dtype and vertices.flags.writeable
     out = vertices if fits else np.empty(vertices.shape, dtype)
     _kernels.place(vertices, rows, out, threads)
@@ -202,42 +200,3 @@ def place_fresh(
     if normals is not None:
         _kernels.turn_normals(normals, rows, threads)
     return Surface(out, triangles, normals, space, unit)
-
-
-class Places(NamedTuple):
-    """Where an affine puts vertices: at (v, 3) float32 or float64, as they are rounded when they are written.
-
-    rounding: how far that moves one along each axis at most, in the frame that they came from.
-    """
-
-    at: npt.NDArray[Any]
-    rounding: float
-
-
-def places_of(vertices: npt.NDArray[Any], affine: npt.NDArray[np.float64], threads: int = 1) -> Places:
-    """What `place_fresh` makes of (v, 3) vertices, which stay as they are."""
-    rows = np.ascontiguousarray(affine[:3], dtype=np.float64)
-    out: npt.NDArray[Any] = np.empty(vertices.shape, coordinate_type(vertices, rows))
-    _kernels.place(vertices, rows, out, threads)
-    if not len(out):
-        return Places(out, 0.0)
-    step = float(np.spacing(np.abs(np.array(_kernels.bounds(out), out.dtype)).max()))
-    back = float(np.abs(np.linalg.inv(rows[:, :3])).sum(axis=1).max())
-    return Places(out, step * back)
-
-
-def coordinate_type(vertices: npt.NDArray[Any], rows: npt.NDArray[np.float64]) -> type:
-    """float32, or float64 where the steps of float32 are too coarse for the shortest voxel edge.
-
-    vertices: in index space, so that a column of `rows` (3, 4) is a voxel edge; float64 ones stay so.
-    """
-    if not len(vertices) or vertices.dtype == np.float64:
-        return vertices.dtype.type
-    low, high = np.array(_kernels.bounds(vertices)).reshape(2, 3)
-    linear, offset = rows[:, :3], rows[:, 3]
-    farthest = np.abs(linear @ (low + high) / 2 + offset) + np.abs(linear) @ (high - low) / 2
-    largest = farthest.max()
-    if not largest < np.finfo(np.float32).max:
-        return np.float64
-    shortest = np.sqrt((linear**2).sum(axis=0)).min()
-    return np.float32 if np.spacing(np.float32(largest)) <= _COARSEST_STEP * shortest else np.float64

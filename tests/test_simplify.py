@@ -19,7 +19,7 @@ from isocore import _kernels
 from isocore.backends import Options, prepare
 from isocore.cell_mesh import CellMesh
 from isocore.errors import OptionError
-from isocore.surface import places_of
+from isocore.placing import placing_in
 from isocore.volume import Volume
 
 
@@ -198,12 +198,13 @@ def test_no_triangles_meet_where_vertices_are_rounded_far_from_the_origin() -> N
     affine = np.eye(4)
     affine[:3] = [[0.96, 0.28, 0, 3000], [-0.28, 0.96, 0, 3000], [0, 0, 1, 3000]]
     marched = _kernels.marching_cubes(samples, 4.003)
+    placing = placing_in(_kernels.bounds(marched.vertices), np.float32, affine)
     unaware = _kernels.simplify(*marched[:2], *marched[:2], 0.5)
     assert not _kernels.self_intersections(unaware.vertices, unaware.triangles)
-    assert _kernels.self_intersections(places_of(unaware.vertices, affine).at, unaware.triangles)
+    assert _kernels.self_intersections(placing(unaware.vertices), unaware.triangles)
     found = prepare(Volume(samples, affine=affine), "mc", Options(simplify=True, max_error="0.5"))(4.003)
     surface = found.surface
     assert surface.vertices.dtype == np.float32
     assert not _kernels.self_intersections(surface.vertices, surface.triangles)
-    kept = {place.tobytes() for place in places_of(marched.vertices, affine).at}
+    kept = {place.tobytes() for place in placing(marched.vertices)}
     assert all(place.tobytes() in kept for place in surface.vertices)

@@ -19,6 +19,7 @@ from isocore.labels import MOST_LABELS
 from isocore.methods.carrying import volume_fields
 from isocore.methods.label_simplifying import simplify_labels
 from isocore.methods.simplifying import volume_simplifier
+from isocore.placing import placing_in
 from isocore.surface import place_fresh
 from isocore.volume import Volume
 
@@ -42,7 +43,9 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
     if options.smooth:
         surfaces.smooth(options.smooth, options.threads)
         surfaces.trim()
-    fewer = None if simplifier is None else simplify_labels(surfaces, simplifier)
+    # One layer of background lies around the volume. One type of coordinates for all labels: they share borders.
+    placing = placing_in((-1, -1, -1, *volume.samples.shape), np.float32, volume.affine)
+    fewer = None if simplifier is None else simplify_labels(surfaces, simplifier, placing)
     neighbours = _neighbours(surfaces, census.values, ranks, background)
     rank_of = {int(value): int(rank) for value, rank in zip(census.values, ranks, strict=True) if rank}
     count_of = {int(value): int(count) for value, count in zip(census.values, census.counts, strict=True)}
@@ -65,6 +68,7 @@ def prepare_labels(field: Field, options: Options, outlook: Outlook) -> Extract:
             space=volume.space,
             unit=volume.unit,
             threads=options.threads,
+            dtype=placing.dtype,
         )
         surface = replace(surface, fields=fields) if fields else surface
         voxels = count_of.get(label, 0)
@@ -125,9 +129,7 @@ def label_ranks(values: npt.NDArray[np.float64], background: int) -> npt.NDArray
     return ranks
 
 
-def _solid(
-    surfaces: _kernels.LabelSurfaces, rank: int | None
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
+def _solid(surfaces: _kernels.LabelSurfaces, rank: int | None) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
     """One label's vertices (v, 3), index space, and triangles (t, 3); none for a label that is not there."""
     if rank is None:
         return np.empty((0, 3), np.float32), np.empty((0, 3), np.int32)
@@ -148,4 +150,3 @@ def _neighbours(
         found.setdefault(number[one], []).append(number[other])
         found.setdefault(number[other], []).append(number[one])
     return {label: tuple(sorted(others)) for label, others in found.items()}
-

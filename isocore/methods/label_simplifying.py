@@ -11,6 +11,7 @@ import numpy.typing as npt
 from isocore import _kernels
 from isocore.extraction import Deviation, Simplification
 from isocore.methods.simplifying import Axes, Simplifier, facts_of
+from isocore.placing import Placing
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,10 +40,12 @@ class SimplifiedLabels:
         return self.simplifier.volume_deviation(error, other, back, int(found.unproved[own].sum())), facts
 
 
-def simplify_labels(surfaces: _kernels.LabelSurfaces, simplifier: Simplifier) -> SimplifiedLabels:
-    """Make the triangles of all labels fewer, once for all of them."""
+def simplify_labels(surfaces: _kernels.LabelSurfaces, simplifier: Simplifier, placing: Placing) -> SimplifiedLabels:
+    """Make the triangles of all labels fewer, once for all of them, so that none meet where they are written."""
     start = perf_counter()
-    found = surfaces.simplify(*simplifier.scales(), simplifier.most_triangles, simplifier.threads)
+    found = surfaces.simplify(
+        *simplifier.scales(), simplifier.most_triangles, placing.for_kernels(), simplifier.threads
+    )
     return SimplifiedLabels(found, simplifier, perf_counter() - start)
 
 

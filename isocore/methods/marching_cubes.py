@@ -18,7 +18,8 @@ from isocore.errors import OptionError
 from isocore.extraction import Ambiguous, Extract, Extraction, Field, Findings, Outlook
 from isocore.job import Options
 from isocore.methods.normals import Mesh, volume_normals
-from isocore.surface import place_fresh, places_of
+from isocore.placing import placing_in
+from isocore.surface import place_fresh
 from isocore.volume import Volume
 
 if TYPE_CHECKING:
@@ -74,7 +75,8 @@ def drawn(
     reference: makes the surface that the mesh stands for, where it is not that itself.
     """
     if simplify is not None:
-        fewer = simplify(mesh, reference, lambda vertices: places_of(vertices, volume.affine, options.threads))
+        placing = placing_in(_kernels.bounds(mesh[0]), mesh[0].dtype.type, volume.affine) if len(mesh[0]) else None
+        fewer = simplify(mesh, reference, placing)
         mesh, warnings = (fewer.vertices, fewer.triangles), (*warnings, *fewer.warnings)
         findings = replace(findings, error=fewer.error, simplification=fewer.facts)
     return placed(volume, mesh, options, findings, warnings)

@@ -21,7 +21,7 @@ from isocore.errors import OptionError
 from isocore.extraction import Deviation, Simplification
 from isocore.job import Options
 from isocore.methods.bounds import DEFAULT_MAX_ERROR, Bound, bound_for, mesh_bound
-from isocore.surface import Places
+from isocore.placing import Placing
 from isocore.volume import Volume
 
 Mesh = tuple[npt.NDArray[Any], npt.NDArray[np.int32]]
@@ -62,12 +62,12 @@ class Simplifier:
         self,
         mesh: Mesh,
         reference: Callable[[], Mesh] | None = None,
-        place: Callable[[npt.NDArray[Any]], Places] | None = None,
+        placing: Placing | None = None,
     ) -> Simplified:
         """A kernel's mesh with fewer triangles.
 
         reference: makes the surface that it stands for, if not that itself.
-        place: where its vertices are written, if not where they are. Rounded there, two triangles may meet that were
+        placing: where its vertices are written, if not where they are. Rounded there, two triangles may meet that were
         apart before; that is rare, so it is looked at, and then simplified again with an eye on it.
         """
         known = mesh if reference is None else reference()
@@ -78,8 +78,8 @@ class Simplifier:
         if found.unproved and mesh is not known and self.is_bounded:
             mesh = known  # a coarse triangle is too far from the reference, so start from that
             found, error = self._run(mesh, known)
-        if place is not None and self._meets_itself(found, place):
-            found, error = self._run(mesh, known, place(mesh[0]))
+        if placing is not None and self._meets_itself(found, placing):
+            found, error = self._run(mesh, known, placing)
         facts = facts_of(len(mesh[1]), found.collapses, found.refused, perf_counter() - start)
         missed = self.missed(len(found.triangles))
         return Simplified(found.vertices, found.triangles, found.kept, error, facts, missed)
@@ -89,11 +89,11 @@ class Simplifier:
         """Does a bound hold, whatever number of triangles is asked for?"""
         return math.isfinite(self.bound.distance) and (self.given or not self.most_triangles)
 
-    def _meets_itself(self, found: _kernels.SimplifiedMesh, place: Callable[[npt.NDArray[Any]], Places]) -> bool:
-        return _kernels.self_intersections(place(found.vertices).at, found.triangles, self.threads) > 0
+    def _meets_itself(self, found: _kernels.SimplifiedMesh, placing: Placing) -> bool:
+        return _kernels.self_intersections(placing(found.vertices, self.threads), found.triangles, self.threads) > 0
 
     def _run(
-        self, mesh: Mesh, reference: Mesh, places: Places | None = None
+        self, mesh: Mesh, reference: Mesh, placing: Placing | None = None
     ) -> tuple[_kernels.SimplifiedMesh, Deviation]:
         if self.spacing is None:
             bound = self.bound.distance if self.is_bounded else math.inf
@@ -102,7 +102,7 @@ class Simplifier:
             found = self._simplify(mesh, reference, bound / cell, stretch, stretch, cell)
             back = found.back_max * cell
             return found, self._deviation(None, _times(found.error, cell), None, back, found.unproved)
-        found = self._simplify(mesh, reference, *self.scales(), places=places)
+        found = self._simplify(mesh, reference, *self.scales(), placing=placing)
         return found, self.volume_deviation(found.error, found.error_other, found.back_max, found.unproved)
 
     def scales(self) -> tuple[float, Axes, Axes]:
@@ -130,11 +130,11 @@ class Simplifier:
         stretch: Axes,
         other: Axes,
         cell: float = 1.0,
-        places: Places | None = None,
+        placing: Placing | None = None,
     ) -> _kernels.SimplifiedMesh:
-        written, rounding = (places.at.astype(np.float64), places.rounding) if places else (None, 0.0)
+        writing = placing.for_kernels() if placing else None
         return _kernels.simplify(
-            *mesh, *reference, bound, stretch, other, cell, self.most_triangles, written, rounding, self.threads
+            *mesh, *reference, bound, stretch, other, cell, self.most_triangles, writing, self.threads
         )
 
     def _deviation(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from isocore import _kernels
+from isocore.placing import placing_in
 from tests.label_oracle import broken_label_promises, regions, surfaces_of
 
 
@@ -49,3 +51,18 @@ def test_curves_are_simplified_as_well() -> None:
     found = surfaces.simplify(0.5)
     assert found.all_before > 1000 and found.all_after < 60
     assert broken_label_promises(labels, 0.5) == []
+
+
+def test_no_triangles_meet_where_vertices_are_rounded_far_from_the_origin() -> None:
+    """Unless told how vertices are written, some would."""
+    labels = regions(np.random.default_rng(1), (40, 36, 12), 6)
+    affine = np.array([[0.96, 0.28, 0, 3000], [-0.28, 0.96, 0, 3000], [0, 0, 1, 3000]])
+    placing = placing_in((-1, -1, -1, *labels.shape), np.float32, affine)
+    meeting = []
+    for writing in (None, placing.for_kernels()):
+        surfaces = surfaces_of(labels)
+        surfaces.smooth(20)
+        surfaces.simplify(0.5, writing=writing)
+        mesh = surfaces.shared()
+        meeting.append(_kernels.self_intersections(placing(mesh.vertices), mesh.triangles))
+    assert meeting[0] > meeting[1] == 0

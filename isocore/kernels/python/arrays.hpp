@@ -4,10 +4,12 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 
+#include "common/affine.hpp"
 #include "common/array.hpp"
 #include "common/grid.hpp"
 
@@ -21,6 +23,14 @@ template <class T, std::ptrdiff_t columns>
 using Rows = nb::ndarray<const T, nb::shape<-1, columns>, nb::c_contig, nb::device::cpu>;
 template <class T>
 using Vector = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+using AffineArray = nb::ndarray<const double, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
+
+inline Affine to_affine(const AffineArray& array) {
+    Affine affine;
+    std::copy_n(array.data(), affine.size(), affine.begin());
+    return affine;
+}
 
 template <class T>
 GridView<T> grid_view(const VolumeArray<T>& samples) {

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/affine.hpp"
 #include "common/large_pages.hpp"
 #include "labels/census.hpp"
 #include "labels/label_mesh.hpp"
@@ -194,11 +195,15 @@ void bind_labels(nb::module_& module) {
         .def(
             "simplify",
             [=](LabelSurfaces& all, double max_error, const std::array<double, 3>& stretch,
-                const std::array<double, 3>& other, std::size_t most_triangles, int threads) {
-                return all.simplify({max_error, stretch, 1.0, other, most_triangles, 0.0, threads}, simplified_labels);
+                const std::array<double, 3>& other, std::size_t most_triangles, const Writing* writing, int threads) {
+                const Writing as_is;
+                return all.simplify(
+                    {max_error, stretch, 1.0, other, most_triangles, writing ? *writing : as_is, threads},
+                    simplified_labels);
             },
             arg("max_error"), arg("stretch") = std::array<double, 3>{1, 1, 1},
-            arg("other") = std::array<double, 3>{1, 1, 1}, arg("most_triangles") = 0, arg("threads") = 1)
+            arg("other") = std::array<double, 3>{1, 1, 1}, arg("most_triangles") = 0,
+            arg("writing").none() = nb::none(), arg("threads") = 1)
         .def(
             "solid", [=](LabelSurfaces& all, std::size_t rank) { return all.solid(rank, label_solid); }, arg("rank"))
         .def("shared", [=](const LabelSurfaces& all) { return all.shared(label_mesh); });

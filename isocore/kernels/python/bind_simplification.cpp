@@ -1,14 +1,12 @@
 // bind_simplification.cpp - simplify(vertices, triangles, reference_vertices, reference_triangles, max_error, stretch,
-// other, cell, most_triangles, written, rounding, threads), once per type of coordinates.
+// other, cell, most_triangles, writing, threads), once per type of coordinates.
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/optional.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <stdexcept>
 
+#include "common/affine.hpp"
 #include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "python/named_tuple.hpp"
@@ -30,15 +28,11 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
         "simplify",
         [=](const Rows<Real, 3>& vertices, const Triangles& triangles, const Rows<Real, 3>& reference_vertices,
             const Triangles& reference_triangles, double max_error, const std::array<double, 3>& stretch,
-            const std::array<double, 3>& other, double cell, std::size_t most_triangles,
-            const std::optional<Rows<double, 3>>& written, double rounding, int threads) {
-            const simplification::Options options{max_error, stretch, cell, other, most_triangles, rounding, threads};
-            simplification::MeshArrays<Real> input = arrays(vertices, triangles);
-            if (written) {
-                if (written->shape(0) != vertices.shape(0))
-                    throw std::invalid_argument("written: one place per vertex");
-                input.written = written->data();
-            }
+            const std::array<double, 3>& other, double cell, std::size_t most_triangles, const Writing* writing,
+            int threads) {
+            const simplification::Options options{
+                max_error, stretch, cell, other, most_triangles, writing == nullptr ? Writing{} : *writing, threads};
+            const simplification::MeshArrays<Real> input = arrays(vertices, triangles);
             simplification::Simplified<Real> out;
             {
                 const nb::gil_scoped_release unlocked;
@@ -57,8 +51,8 @@ void bind(nb::module_& module, const NamedTuple& simplified) {
         nb::arg("vertices").noconvert(), nb::arg("triangles").noconvert(), nb::arg("reference_vertices").noconvert(),
         nb::arg("reference_triangles").noconvert(), nb::arg("max_error"),
         nb::arg("stretch") = std::array<double, 3>{1, 1, 1}, nb::arg("other") = std::array<double, 3>{1, 1, 1},
-        nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("written").noconvert() = nb::none(),
-        nb::arg("rounding") = 0.0, nb::arg("threads") = 1);
+        nb::arg("cell") = 1.0, nb::arg("most_triangles") = 0, nb::arg("writing").none() = nb::none(),
+        nb::arg("threads") = 1);
 }
 
 }  // namespace
@@ -67,6 +61,14 @@ void bind_simplification(nb::module_& module) {
     const NamedTuple simplified(
         module, "SimplifiedMesh",
         {"vertices", "triangles", "kept", "collapses", "refused", "unproved", "error", "error_other", "back_max"});
+    nb::class_<Writing>(module, "Writing")
+        .def(
+            "__init__",
+            [](Writing* made, const AffineArray& affine, bool is_single, double rounding) {
+                new (made) Writing{to_affine(affine), is_single, rounding};
+            },
+            nb::arg("affine").noconvert(), nb::arg("is_single"), nb::arg("rounding"))
+        .def_ro("rounding", &Writing::rounding);
     bind<float>(module, simplified);
     bind<double>(module, simplified);
 }

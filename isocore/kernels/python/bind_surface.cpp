@@ -24,19 +24,12 @@ namespace isocore::python {
 namespace {
 
 using Triangles = Rows<std::int32_t, 3>;
-using AffineArray = nb::ndarray<const double, nb::shape<3, 4>, nb::c_contig, nb::device::cpu>;
 template <class T>
 using OwnRows = nb::ndarray<T, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
 template <class Real>
 MeshView<Real> mesh_view(const Rows<Real, 3>& vertices, const Triangles& triangles) {
     return {vertices.data(), vertices.shape(0), triangles.data(), triangles.shape(0)};
-}
-
-Affine to_affine(const AffineArray& array) {
-    Affine affine;
-    std::copy_n(array.data(), 12, affine.begin());
-    return affine;
 }
 
 nb::tuple as_tuple(const std::array<double, 6>& b) { return nb::make_tuple(b[0], b[1], b[2], b[3], b[4], b[5]); }

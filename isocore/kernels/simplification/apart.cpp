@@ -28,8 +28,8 @@ class Worker {
         : whole_(whole),
           witnesses_(witnesses),
           reference_(reference),
-          mesh_(options.stretch, options.rounding),
-          grid_(options.rounding),
+          mesh_(options.stretch, options.writing),
+          grid_(options.writing.rounding),
           contraction_(mesh_, reference, grid_, limit) {
         contraction_.backward().prove_all(std::isfinite(options.max_error));
     }
@@ -40,11 +40,11 @@ class Worker {
         if (witnesses_ != nullptr)
             mesh_.take_witnesses(whole_.mesh, reference_.mesh(), *witnesses_, part_.first_numbered);
         if (mesh_.has_sheets()) mesh_.add_curve_witnesses();
-        find_movable();
+        find_movable(low, high);
         if (!movable_.empty()) {
             enter_triangles(low, high);
             contraction_.start_over();
-            contraction_.backward().enter_box(low, high, contraction_.limit());
+            contraction_.backward().enter_box(whole_.cells.first_of_home(low), high, contraction_.limit());
             costs_.resize(mesh_.vertex_count());
             sweep(movable_, mesh_, contraction_, costs_, std::numeric_limits<std::size_t>::max());
         }
@@ -60,15 +60,25 @@ class Worker {
         part_.forget_lists();
     }
 
-    // Those in the box with all their neighbours.
-    void find_movable() {
+    // Those in the box with all their neighbours, and not so near to its walls that writing could make their triangles
+    // meet those beyond.
+    void find_movable(const Cell& low, const Cell& high) {
+        const double margin = whole_.cells.margin;
+        const auto is_inside = [&](std::int32_t number) {
+            if (margin == 0) return part_.is_own(number);
+            const auto& place = mesh_.places[static_cast<std::size_t>(number)].at;
+            const Cell from = whole_.cells.home(place.data(), -margin), to = whole_.cells.home(place.data(), margin);
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (from[a] < low[a] || to[a] > high[a]) return false;
+            }
+            return true;
+        };
         movable_.clear();
         for (std::size_t v = part_.first_own; v < part_.end_own; ++v) {
             Vertex& vertex = mesh_.vertices[v];
             vertex.movable = vertex.may_move() && std::all_of(vertex.ring, vertex.ring + vertex.count, [&](auto t) {
                                  const auto& corners = mesh_.triangles[static_cast<std::size_t>(t)].corners;
-                                 return std::all_of(corners.begin(), corners.end(),
-                                                    [&](std::int32_t corner) { return part_.is_own(corner); });
+                                 return std::all_of(corners.begin(), corners.end(), is_inside);
                              });
             if (vertex.movable) movable_.push_back(static_cast<std::int32_t>(v));
         }
@@ -170,11 +180,13 @@ Tally contract_apart(const MeshArrays<Real>& input, const Reference<Real>& refer
     std::vector<Remains> parts;
     Tally tally;
     if (!by_cubes) {
-        // A triangle of the reference that ends where a cell begins is entered in the one before.
-        const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0, 1};
+        // A triangle of the reference that ends where a cell begins is entered in the one before; and where there is a
+        // margin, that one's end may be at home in the next.
+        const std::int32_t before = reference.cells().margin > 0 ? 2 : 1;
+        const IndexedMesh<Real> whole{input, reference.cells(), reference.index(), 0, before};
         tally = contract_boxes<Real>(whole, nullptr, reference, limit, options, parts);
     } else {
-        const Cubes cubes(reference.cells(), options.rounding);
+        const Cubes cubes(reference.cells());
         const FirstWitnesses witnesses =
             find_witnesses(input, cubes, *by_cubes, reference.mesh(), mesh.stretch(), limit, options.threads);
         by_cubes.reset();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 
 #include "common/parallel_each.hpp"
 
@@ -19,11 +21,14 @@ class BoxFinder {
 
     std::vector<MeshBox> find() {
         each_vertex([&](std::size_t v) {
-            box_of_[v] = static_cast<std::uint32_t>(number_of(box_at(mesh_.places[v].at, 0), dims_));
+            const std::array<Real, 3>& place = mesh_.places[v].at;
+            const Cell low = box_at(place, -cells_.margin),
+                       high = cells_.margin > 0 ? box_at(place, cells_.margin) : low;
+            box_of_[v] = low == high ? static_cast<std::uint32_t>(number_of(low, dims_)) : kNoBox;
         });
         each_vertex([&](std::size_t v) {
             Vertex& vertex = mesh_.vertices[v];
-            vertex.movable = vertex.may_move() && has_ring_in_box(vertex, box_of_[v]);
+            vertex.movable = vertex.may_move() && box_of_[v] != kNoBox && has_ring_in_box(vertex, box_of_[v]);
         });
         std::vector<MeshBox> boxes(dims_[0] * dims_[1] * dims_[2]);
         for (std::size_t v = 0; v < box_of_.size(); ++v) {
@@ -49,11 +54,8 @@ class BoxFinder {
 
     // The box of a place that is moved by a step along each axis.
     Cell box_at(const std::array<Real, 3>& place, double step) const {
-        Cell out;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const double at = static_cast<double>(place[a]) + step;
-            out[a] = (cells_.clamped(cells_.in_cells(at, a), a) + shift_[a]) / kBoxCells;
-        }
+        Cell out = cells_.home(place.data(), step);
+        for (std::size_t a = 0; a < 3; ++a) out[a] = (out[a] + shift_[a]) / kBoxCells;
         return out;
     }
 
@@ -78,15 +80,13 @@ class BoxFinder {
         }
     }
 
-    // Those from `low` to `high`. Where writing moves vertices, those of the box may meet the triangle outside of it.
+    // Those from `low` to `high`.
     void find_boxes_of(const Triangle& triangle, Cell& low, Cell& high) const {
-        const double moved = 2 * options_.rounding;
         for (std::size_t n = 0; n < 3; ++n) {
-            const auto& place = mesh_.places[static_cast<std::size_t>(triangle.corners[n])].at;
-            const Cell from = box_at(place, -moved), to = box_at(place, moved);
+            const Cell at = box_at(mesh_.places[static_cast<std::size_t>(triangle.corners[n])].at, 0);
             for (std::size_t a = 0; a < 3; ++a) {
-                low[a] = n == 0 ? from[a] : std::min(low[a], from[a]);
-                high[a] = n == 0 ? to[a] : std::max(high[a], to[a]);
+                low[a] = n == 0 ? at[a] : std::min(low[a], at[a]);
+                high[a] = n == 0 ? at[a] : std::max(high[a], at[a]);
             }
         }
     }
@@ -103,6 +103,9 @@ class BoxFinder {
             }
         });
     }
+
+    // Of a vertex so near to a wall between boxes that writing could make its triangles meet those beyond.
+    static constexpr std::uint32_t kNoBox = std::numeric_limits<std::uint32_t>::max();
 
     Mesh<Real>& mesh_;
     const Cells& cells_;

@@ -37,6 +37,8 @@ struct Cells {
     std::array<double, 3> origin{0, 0, 0};  // the low corner of cell 0, 0, 0
     double per_cell = 1;                    // from coordinates to cells
     std::array<std::size_t, 3> dims{1, 1, 1};
+    // In coordinates. A vertex that is nearer to a wall between two boxes does not move, nor do its neighbours.
+    double margin = 0;
 
     // Cells that hold all vertices of a mesh, not many more than it has triangles: where there were, they are twice as
     // wide, or four times and so on. Where the side is 1, corners of cells have whole coordinates.
@@ -76,6 +78,21 @@ struct Cells {
         Cell out;
         for (std::size_t a = 0; a < 3; ++a) out[a] = clamped(in_cells(static_cast<double>(place[a]), a), a);
         return out;
+    }
+    // That for which a vertex counts where boxes are made of cells. Where there is a margin, boxes begin and end a
+    // little before their cells do: with many vertices on whole coordinates, all of those would be too near to walls.
+    // step: how far the vertex is moved along each axis.
+    template <class Real>
+    Cell home(const Real* place, double step = 0) const {
+        Cell out;
+        for (std::size_t a = 0; a < 3; ++a)
+            out[a] = clamped(in_cells(static_cast<double>(place[a]) + (2 * margin + step), a), a);
+        return out;
+    }
+    // The first cell in which places may lie that have their home in the cells from `low` on.
+    Cell first_of_home(Cell low) const {
+        for (std::int32_t& at : low) at = margin > 0 ? std::max(at - 1, 0) : at;
+        return low;
     }
     std::int32_t clamped(double in_cells, std::size_t axis) const {
         const double most = static_cast<double>(dims[axis] - 1);

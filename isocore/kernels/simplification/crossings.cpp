@@ -268,14 +268,8 @@ std::array<std::int32_t, 3> Crossings<Real>::Candidates::numbers(std::size_t tri
 template <class Real>
 Corners3 Crossings<Real>::exact(const std::array<std::int32_t, 3>& numbers) const {
     Corners3 out{numbers, {}};
-    if (!mesh_.written.empty()) {
-        for (std::size_t n = 0; n < 3; ++n) out.places[n] = mesh_.written[static_cast<std::size_t>(numbers[n])];
-        return out;
-    }
-    for (std::size_t n = 0; n < 3; ++n) {
-        const auto& at = mesh_.places[static_cast<std::size_t>(numbers[n])].at;
-        out.places[n] = {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
-    }
+    for (std::size_t n = 0; n < 3; ++n)
+        out.places[n] = mesh_.writing().written(mesh_.places[static_cast<std::size_t>(numbers[n])].at);
     return out;
 }
 

@@ -15,7 +15,7 @@ class Cubes {
     static constexpr int kBits = 1;  // a cube is this power of two of cells wide
 
     // rounding: how far writing moves a corner along each axis, in coordinates; a triangle touches what it then may.
-    Cubes(const Cells& cells, double rounding);
+    explicit Cubes(const Cells& cells, double rounding = 0);
 
     const Cells& cells() const { return cells_; }
     const std::array<std::size_t, 3>& dims() const { return dims_; }

@@ -157,7 +157,7 @@ class Nearest {
     auto rank_of(std::int32_t triangle) const {
         const std::int32_t* const c = mesh_.triangles + 3 * static_cast<std::size_t>(triangle);
         const auto rank = [&](std::int32_t vertex) {
-            return std::tuple(morton(cells_.at(mesh_.place(vertex).data()), kBrickBits), vertex);
+            return std::tuple(morton(cells_.home(mesh_.place(vertex).data()), kBrickBits), vertex);
         };
         return std::tuple(std::min({rank(c[0]), rank(c[1]), rank(c[2])}), triangle);
     }

@@ -44,9 +44,10 @@ Quadric* QuadricRoom::take() {
 }
 
 template <class Real>
-Mesh<Real>::Mesh(const std::array<double, 3>& stretch, double rounding)
+Mesh<Real>::Mesh(const std::array<double, 3>& stretch, const Writing& writing)
     : stretch_{static_cast<float>(stretch[0]), static_cast<float>(stretch[1]), static_cast<float>(stretch[2])},
-      rounding_(static_cast<float>(rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {}
+      writing_(writing),
+      rounding_(static_cast<float>(writing.rounding * std::max({stretch[0], stretch[1], stretch[2]}))) {}
 
 template <class Real>
 void Mesh<Real>::take_all(const MeshArrays<Real>& input, const Cells& cells, int threads) {
@@ -62,19 +63,14 @@ Array<std::int32_t> Mesh<Real>::number_vertices(const MeshArrays<Real>& input, c
     const std::size_t count = input.vertex_count;
     std::vector<std::pair<std::uint64_t, std::int32_t>> order(count);
     for (std::size_t n = 0; n < count; ++n)
-        order[n] = {morton(cells.at(input.vertices + 3 * n), kBrickBits), static_cast<std::int32_t>(n)};
+        order[n] = {morton(cells.home(input.vertices + 3 * n), kBrickBits), static_cast<std::int32_t>(n)};
     std::sort(order.begin(), order.end());
     places.resize(count);
     from_vertices.resize(count);
-    if (input.written != nullptr) written.resize(count);
     Array<std::int32_t> numbers(count);
     for (std::size_t n = 0; n < count; ++n) {
         const std::int32_t from = from_vertices[n] = order[n].second;
         places[n] = {input.place(from), kNone};
-        if (input.written != nullptr) {
-            const double* const there = input.written + 3 * static_cast<std::size_t>(from);
-            written[n] = {there[0], there[1], there[2]};
-        }
         numbers[static_cast<std::size_t>(from)] = static_cast<std::int32_t>(n);
     }
     return numbers;

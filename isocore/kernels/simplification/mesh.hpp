@@ -102,7 +102,7 @@ template <class Real>
 class Mesh {
   public:
     // Without any vertex.
-    Mesh(const std::array<double, 3>& stretch, double rounding);
+    Mesh(const std::array<double, 3>& stretch, const Writing& writing);
 
     // Vertices are renumbered by where they are, triangles by their lowest vertex, so that neighbours are close
     // together in memory. Three ways to fill a mesh: with all of the input; with a part of it; with what is left of all
@@ -123,7 +123,8 @@ class Mesh {
         return isocore::simplification::relative(place, origin, stretch_);
     }
     const Spot& stretch() const { return stretch_; }
-    // How far writing moves a vertex along each axis at most, stretched.
+    const Writing& writing() const { return writing_; }
+    // How far that moves a vertex along each axis at most, stretched.
     float rounding() const { return rounding_; }
 
     // What is left, in the order in which it came in.
@@ -148,8 +149,7 @@ class Mesh {
     std::vector<Vertex> vertices;
     std::vector<Quadric*> quadrics;  // of vertices that have been looked at, or could be a target
     Array<Triangle> triangles;
-    Array<float> proved;   // by triangle: how far its points lie from the reference, at most
-    Array<Point> written;  // where the vertices are written; none where they stay as they are
+    Array<float> proved;  // by triangle: how far its points lie from the reference, at most
     // Numbers in the input: of the vertices, and then of witnesses, where those of the reference's vertices follow on
     // the input's; of the triangles.
     Array<std::int32_t> from_vertices, from_triangles;
@@ -208,6 +208,7 @@ class Mesh {
     void note_curves();
 
     Spot stretch_;
+    Writing writing_;
     float rounding_;
     MeshArrays<Real> input_{}, reference_{};  // where links lead to
     Array<std::int32_t> rings_;

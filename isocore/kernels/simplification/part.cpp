@@ -14,7 +14,7 @@ CellIndex index_by_boxes(const MeshArrays<Real>& mesh, const Cells& cells) {
     for (std::size_t a = 0; a < 3; ++a) dims[a] = ((cells.dims[a] - 1) >> kBoxBits) + 1;
     Array<std::uint32_t> box_of(mesh.vertex_count);
     for (std::size_t v = 0; v < mesh.vertex_count; ++v) {
-        Cell box = cells.at(mesh.vertices + 3 * v);
+        Cell box = cells.home(mesh.vertices + 3 * v);
         for (std::int32_t& at : box) at >>= kBoxBits;
         box_of[v] = static_cast<std::uint32_t>(number_of(box, dims));
     }
@@ -76,7 +76,7 @@ std::size_t PartFinder<Real>::meet(std::int32_t vertex, const Cell& low, const C
         const auto known = static_cast<std::size_t>(table_[at]);
         if (met_[known].number == vertex) return known;
     }
-    const Cell cell = whole_.cells.at(whole_.mesh.vertices + 3 * static_cast<std::size_t>(vertex));
+    const Cell cell = whole_.cells.home(whole_.mesh.vertices + 3 * static_cast<std::size_t>(vertex));
     bool is_own = true;
     for (std::size_t a = 0; a < 3; ++a) is_own = is_own && cell[a] >= low[a] && cell[a] <= high[a];
     const auto known = static_cast<std::int32_t>(met_.size());

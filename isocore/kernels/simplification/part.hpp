@@ -24,8 +24,8 @@ struct IndexedMesh {
     int bits;
     std::int32_t before;
 
-    // visit(first, end) of runs of the index's entries: of all triangles with a corner in the cells from `low` to
-    // `high`, both included, and perhaps of others.
+    // visit(first, end) of runs of the index's entries: of all triangles with a corner whose home is in the cells from
+    // `low` to `high`, both included, and perhaps of others.
     template <class Visit>
     void each_run_between(Cell low, Cell high, const Visit& visit) const {
         for (std::size_t a = 0; a < 3; ++a) {

@@ -36,12 +36,8 @@ void check(const MeshArrays<Real>& input) {
     }
 }
 
-// Can the first phase make a mesh for each box? Rounding lets triangles of neighbouring boxes meet, and a number of
-// triangles asked for is reached by edges of the whole mesh.
-template <class Real>
-bool goes_apart(const MeshArrays<Real>& input, const Options& options) {
-    return !options.together && input.written == nullptr && options.rounding == 0 && options.most_triangles == 0;
-}
+// Can the first phase make a mesh for each box? A number of triangles asked for is reached by edges of the whole mesh.
+bool goes_apart(const Options& options) { return !options.together && options.most_triangles == 0; }
 
 template <class Real>
 class Simplification {
@@ -51,14 +47,15 @@ class Simplification {
           options_(options),
           cells_(Cells::around(reference, options.cell)),
           limit_(static_cast<float>(std::min(options.max_error, farthest()))),
-          mesh_(options.stretch, options.rounding) {
-        if (goes_apart(input, options)) {
+          mesh_(options.stretch, options.writing) {
+        cells_.margin = options.writing.margin();
+        if (goes_apart(options)) {
             std::optional<CellIndex> by_cubes;
             parallel_for(options.threads, input.is_same(reference) ? 1 : 2, [&](std::size_t n) {
                 if (n == 0)
                     reference_ = std::make_unique<Reference<Real>>(reference, cells_);
                 else
-                    by_cubes = index_by_cubes(input, Cubes(cells_, options.rounding));
+                    by_cubes = index_by_cubes(input, Cubes(cells_));
             });
             tally_ = contract_apart(input, *reference_, std::move(by_cubes), limit_, options, mesh_);
             first_phase_ = 1;
@@ -124,7 +121,7 @@ class Simplification {
     // A thread's.
     struct Worker {
         Worker(Mesh<Real>& mesh, const Reference<Real>& reference, float limit, const Options& options)
-            : grid(options.rounding), contraction(mesh, reference, grid, limit) {}
+            : grid(options.writing.rounding), contraction(mesh, reference, grid, limit) {}
 
         TriangleGrid grid;
         Contraction<Real> contraction;
@@ -141,7 +138,7 @@ class Simplification {
                 reference_ = std::make_unique<Reference<Real>>(reference, cells_);
         });
         if (!is_own) {
-            const Cubes cubes(cells_, options_.rounding);
+            const Cubes cubes(cells_);
             const FirstWitnesses witnesses = find_witnesses(input_, cubes, index_by_cubes(input_, cubes), reference,
                                                             mesh_.stretch(), limit_, options_.threads);
             mesh_.take_witnesses(input_, reference, witnesses, 0);
@@ -181,7 +178,7 @@ class Simplification {
         worker.contraction.look_through_new_grid();
         constexpr int kPhasesWithCopies = 2;  // the last phases change too little for copies to pay
         if (phase < kPhasesWithCopies)
-            worker.contraction.backward().enter_box(box.low, box.high, limit_);
+            worker.contraction.backward().enter_box(cells_.first_of_home(box.low), box.high, limit_);
         else
             worker.contraction.backward().leave_box();
     }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/affine.hpp"
 #include "common/array.hpp"
 #include "common/narrow_array.hpp"
 
@@ -26,8 +27,7 @@ struct Options {
     std::array<double, 3> other{1, 1, 1};  // from coordinates to another unit, in which the error is measured besides
     // If not 0: stop when there are no more triangles than these. Smaller bounds are exhausted before larger ones.
     std::size_t most_triangles = 0;
-    // How far writing moves a vertex at most, once it is brought back to these coordinates.
-    double rounding = 0;
+    Writing writing;  // triangles meet or not as they do once they are written so
     int threads = 1;
     bool together = false;  // the first phase has one mesh, instead of one for each box: the result is the same
 };
@@ -86,8 +86,6 @@ struct MeshArrays {
     std::size_t triangle_count;
     const NarrowArray* sheets = nullptr;  // of each triangle: the number of its sheet
     std::size_t sheet_count = 0;
-    // Where each vertex is written, x, y, z: elsewhere, since it is turned, stretched and rounded. None where it stays.
-    const double* written = nullptr;
 
     bool is_same(const MeshArrays& other) const { return vertices == other.vertices && triangles == other.triangles; }
     std::array<Real, 3> place(std::int32_t vertex) const {

@@ -30,13 +30,9 @@ template <class From, class To>
 void place(const From* vertices, std::size_t count, const Affine& affine, To* out, int threads) {
     for_each_block(count, threads, [&, a = affine](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            const double x = static_cast<double>(vertices[3 * v]);
-            const double y = static_cast<double>(vertices[3 * v + 1]);
-            const double z = static_cast<double>(vertices[3 * v + 2]);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const double* row = a.data() + 4 * axis;
-                out[3 * v + axis] = static_cast<To>(row[0] * x + row[1] * y + row[2] * z + row[3]);
-            }
+            const std::array<From, 3> at{vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]};
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                out[3 * v + axis] = static_cast<To>(through(a, at.data(), axis));
         }
     });
 }

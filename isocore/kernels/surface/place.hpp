@@ -5,11 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "common/affine.hpp"
 #include "surface/mesh_view.hpp"
 
 namespace isocore {
-
-using Affine = std::array<double, 12>;  // (3, 4), rows first
 
 // The cofactors of the linear part, row by row: the inverse transpose times the determinant, exact where the entries
 // are.
