@@ -8,7 +8,7 @@ from isocore.choices import FORMATS, SPACES
 from isocore.requirements import REQUIREMENTS
 
 from .groups import GROUPS, option_of
-from .options import OFFSETS, PATH, reading_and_offset_options
+from .options import OFFSETS, OUTPUT_FILE, PATH, reading_and_offset_options
 from .steps import StepNumbers, Times
 from .values import Colour, Isovalue, Jobs, LabelList, Memory, Words
 
@@ -70,7 +70,7 @@ LABELS = (
 )
 
 OUTPUT = (
-    _output("-o", "--output", type=PATH, metavar="FILE", help="Of one input and one isovalue; - is stdout."),
+    _output("-o", "--output", type=OUTPUT_FILE, metavar="FILE", help="Of one input and one isovalue; - is stdout."),
     _output(
         "-d",
         "--output-dir",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
@@ -179,4 +180,14 @@ class PathType(click.Path):
         return super().convert(value, parameter, context)
 
 
+class OutputType(PathType):
+    """A file to be written: with a slash at its end it would be a folder, and `-d` is meant."""
+
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        if str(value).endswith(("/", os.sep)):
+            self.fail(f"{value} is a folder; name a file in it, or give the folder with -d", parameter, context)
+        return super().convert(value, parameter, context)
+
+
 PATH = PathType(path_type=Path, readable=False)
+OUTPUT_FILE = OutputType(path_type=Path, readable=False)

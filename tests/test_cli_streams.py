@@ -235,6 +235,14 @@ def test_an_empty_path_is_a_wrong_command(here: Path, arguments: tuple[str, ...]
     assert sorted(here.rglob("*")) == before
 
 
+def test_an_output_with_a_slash_at_its_end_is_no_file(here: Path) -> None:
+    """Where there is no such folder, a file of its name would be made in its place."""
+    before = sorted(here.rglob("*"))
+    made = run(here, "convert", "a.nii", "-i", 50, "-f", "ply", "-o", "meshes/")
+    assert made.returncode == 2 and "meshes/ is a folder; name a file in it, or give the folder with -d" in made.stderr
+    assert sorted(here.rglob("*")) == before
+
+
 @needs_posix
 def test_where_the_working_folder_is_gone_whole_paths_still_serve(here: Path) -> None:
     """Others are a wrong command, in one line."""
