@@ -18,7 +18,7 @@ int sign(std::int64_t n) { return n > 0 ? 1 : n < 0 ? -1 : 0; }
 void signs_of_nearly_flat_corners_are_exact() {
     std::mt19937 random(1);
     std::uniform_int_distribution<std::int64_t> small(-3, 3);
-    constexpr double kScale = 1.0 / 1048576;
+    constexpr double kScale = 1.0 / 1048576, kManyBits = 536870909;  // the latter leaves no difference few bits
     for (int round = 0; round < 20000; ++round) {
         std::array<std::array<std::int64_t, 3>, 4> whole;
         std::array<Point, 4> points;
@@ -35,10 +35,16 @@ void signs_of_nearly_flat_corners_are_exact() {
             determinant += way(3, a) * (way(1, b) * way(2, c) - way(1, c) * way(2, b));
         }
         CHECK(side_of_plane(points[0], points[1], points[2], points[3]) == sign(determinant));
+        std::array<Point, 4> long_ones = points;
+        for (Point& point : long_ones) {
+            for (double& at : point) at *= kManyBits;
+        }
+        CHECK(side_of_plane(long_ones[0], long_ones[1], long_ones[2], long_ones[3]) == sign(determinant));
         for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
             const std::int64_t area = way(1, b) * way(2, c) - way(1, c) * way(2, b);
             CHECK(turn(points[0], points[1], points[2], a) == sign(area));
+            CHECK(turn(long_ones[0], long_ones[1], long_ones[2], a) == sign(area));
         }
     }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <utility>
 
 namespace isocore {
@@ -11,39 +12,45 @@ namespace {
 
 using Places = std::array<Point, 3>;
 
-// An axis along which a plane triangle still has an area once it is projected.
-std::size_t axis_of(const Places& t) {
-    std::size_t axis = 0;
-    while (axis < 2 && turn(t[0], t[1], t[2], axis) == 0) ++axis;
-    return axis;
+// A triangle seen along an axis, such that it still has an area: which way it turns there.
+struct View {
+    std::size_t axis;
+    int turns;
+};
+
+View view_of(const Places& t) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        if (const int turns = turn(t[0], t[1], t[2], axis); turns != 0) return {axis, turns};
+    }
+    return {2, turn(t[0], t[1], t[2], 2)};
 }
 
-// Do two segments in one plane, seen along an axis, have a point in common?
-bool segments_meet(const Point& a, const Point& b, const Point& c, const Point& d, std::size_t axis) {
-    const int of_c = turn(a, b, c, axis), of_d = turn(a, b, d, axis);
-    const int of_a = turn(c, d, a, axis), of_b = turn(c, d, b, axis);
-    if (of_c * of_d > 0 || of_a * of_b > 0) return false;
-    if (of_c != 0 || of_d != 0 || of_a != 0 || of_b != 0) return true;
-    const auto overlap = [&](std::size_t n) {  // all four on one line
-        return std::max(std::min(a[n], b[n]), std::min(c[n], d[n])) <=
-               std::min(std::max(a[n], b[n]), std::max(c[n], d[n]));
-    };
-    return overlap((axis + 1) % 3) && overlap((axis + 2) % 3);
-}
-
-bool is_inside(const Point& p, const Places& t, std::size_t axis) {
-    const int one = turn(t[0], t[1], p, axis), two = turn(t[1], t[2], p, axis), three = turn(t[2], t[0], p, axis);
-    return (one >= 0 && two >= 0 && three >= 0) || (one <= 0 && two <= 0 && three <= 0);
+// Do points in the plane of t all lie beyond the same side of it? Of two convex outlines in a plane that have no point
+// in common, one lies beyond a side of the other.
+bool are_beyond_a_side(std::initializer_list<Point> points, const Places& t, const View& view) {
+    for (std::size_t n = 0; n < 3; ++n) {
+        const auto is_beyond = [&](const Point& p) {
+            return turn(t[n], t[(n + 1) % 3], p, view.axis) * view.turns < 0;
+        };
+        if (std::all_of(points.begin(), points.end(), is_beyond)) return true;
+    }
+    return false;
 }
 
 // Does the segment p q, in the plane of t, meet t?
 bool meets_in_plane(const Point& p, const Point& q, const Places& t) {
-    const std::size_t axis = axis_of(t);
-    if (is_inside(p, t, axis)) return true;
-    for (std::size_t n = 0; n < 3; ++n) {
-        if (segments_meet(p, q, t[n], t[(n + 1) % 3], axis)) return true;
-    }
-    return false;
+    const View view = view_of(t);
+    if (are_beyond_a_side({p, q}, t, view)) return false;
+    const int one = turn(p, q, t[0], view.axis);
+    return one == 0 || turn(p, q, t[1], view.axis) != one || turn(p, q, t[2], view.axis) != one;
+}
+
+// Do two triangles of one plane meet?
+bool meet_in_plane(const Places& one, const Places& other) {
+    const View view = view_of(one);
+    return !are_beyond_a_side({other[0], other[1], other[2]}, one, view) &&
+           !are_beyond_a_side({one[0], one[1], one[2]}, other,
+                              {view.axis, turn(other[0], other[1], other[2], view.axis)});
 }
 
 // Does the segment p q meet t? side_p, side_q: of t's plane.
@@ -71,6 +78,7 @@ bool strangers_meet(const Places& one, const Places& other) {
     if (apart(of_one)) return false;
     const auto of_other = sides(other, one);
     if (apart(of_other)) return false;
+    if (of_one == std::array{0, 0, 0} && of_other == of_one) return meet_in_plane(one, other);
     for (std::size_t n = 0; n < 3; ++n) {
         const std::size_t m = (n + 1) % 3;
         if (meets(one[n], one[m], of_one[n], of_one[m], other)) return true;
@@ -82,8 +90,8 @@ bool strangers_meet(const Places& one, const Places& other) {
 // Two that share the side from `from` to `to`, and have one corner each besides.
 bool folded(const Point& from, const Point& to, const Point& one, const Point& other) {
     if (side_of_plane(from, to, one, other) != 0) return false;
-    const std::size_t axis = axis_of({from, to, one});
-    return turn(from, to, one, axis) * turn(from, to, other, axis) >= 0;
+    const View view = view_of({from, to, one});
+    return view.turns * turn(from, to, other, view.axis) >= 0;
 }
 
 }  // namespace

@@ -1,10 +1,16 @@
 // predicates.cpp - Follows J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
 // Predicates", Discrete & Computational Geometry 18, 1997: an error bound for the common case (section 4), and exact
-// sums of doubles for the rest (section 2). Nothing here may be contracted to fused operations.
+// sums of doubles for the rest (section 2). Between them come integers: the flat places of a surface, where only exact
+// arithmetic can tell, have coordinates of few bits, half voxels or float32. Nothing here may be contracted to fused
+// operations.
 #include "common/predicates.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 namespace isocore {
 namespace {
@@ -76,7 +82,64 @@ Parts3 exact_difference(const Point& a, const Point& b) {
     return out;
 }
 
+// Differences of coordinates as integers below 2^30, all multiplied by the same power of two: if all are exact, and
+// none has too many bits.
+template <std::size_t count>
+class Integers {
+  public:
+    void add(double one, double other) {
+        const Pair sum = exact_sum(one, -other);
+        are_exact_ = are_exact_ && sum.low == 0;
+        largest_ = std::max(largest_, std::abs(sum.high));
+        differences_[size_++] = sum.high;
+    }
+
+    std::optional<std::array<std::int64_t, count>> take() const {
+        constexpr std::uint64_t kBits = 30, kBias = 1023, kMantissa = 52;
+        const std::uint64_t exponent = std::bit_cast<std::uint64_t>(largest_) >> kMantissa;
+        if (!are_exact_ || exponent < kBits || exponent > 2 * kBias) return std::nullopt;
+        const double scale = std::bit_cast<double>((2 * kBias + kBits - 1 - exponent) << kMantissa);
+        std::array<std::int64_t, count> out;
+        bool are_whole = true;
+        for (std::size_t n = 0; n < count; ++n) {
+            const double scaled = differences_[n] * scale;
+            out[n] = static_cast<std::int64_t>(scaled);
+            are_whole = are_whole && static_cast<double>(out[n]) == scaled;
+        }
+        return are_whole ? std::optional(out) : std::nullopt;
+    }
+
+  private:
+    std::array<double, count> differences_;
+    std::size_t size_ = 0;
+    double largest_ = 0;
+    bool are_exact_ = true;
+};
+
+int sign_of(std::int64_t number) { return number > 0 ? 1 : number < 0 ? -1 : 0; }
+
+// The sign of a determinant whose numbers are below 2^30: its minors are below 2^61, and their products with the last
+// row are summed in two halves.
+int sign_of_determinant(const std::array<std::int64_t, 9>& m) {
+    constexpr int kHalf = 30;
+    constexpr std::int64_t kLow = (std::int64_t{1} << kHalf) - 1;
+    std::int64_t high = 0, low = 0;
+    for (std::size_t x = 0; x < 3; ++x) {
+        const std::size_t y = (x + 1) % 3, z = (x + 2) % 3;
+        const std::int64_t minor = m[y] * m[3 + z] - m[z] * m[3 + y];
+        high += m[6 + x] * (minor >> kHalf);
+        low += m[6 + x] * (minor & kLow);
+    }
+    high += low >> kHalf;
+    return high != 0 ? sign_of(high) : sign_of(low & kLow);
+}
+
 int exact_side(const Point& a, const Point& b, const Point& c, const Point& d) {
+    Integers<9> differences;
+    for (const Point* const point : {&b, &c, &d}) {
+        for (std::size_t n = 0; n < 3; ++n) differences.add((*point)[n], a[n]);
+    }
+    if (const auto integers = differences.take()) return sign_of_determinant(*integers);
     const std::array<Parts3, 3> rows{exact_difference(b, a), exact_difference(c, a), exact_difference(d, a)};
     ExactSum sum;
     for (std::size_t x = 0; x < 3; ++x) {
@@ -105,6 +168,7 @@ int side_of_plane(const Point& a, const Point& b, const Point& c, const Point& d
     constexpr double kRounding = 8e-16;  // of `size`: more than (7 + 56 * 2^-53) * 2^-53, section 4.3
     if (determinant > kRounding * size) return 1;
     if (determinant < -kRounding * size) return -1;
+    if (size == 0) return 0;
     return exact_side(a, b, c, d);
 }
 
@@ -115,6 +179,12 @@ int turn(const Point& a, const Point& b, const Point& c, std::size_t axis) {
     const double size = kRounding * (std::abs(left) + std::abs(right));
     if (left - right > size) return 1;
     if (left - right < -size) return -1;
+    if (size == 0) return 0;
+    Integers<4> differences;
+    for (const Point* const point : {&b, &c}) {
+        for (const std::size_t n : {x, y}) differences.add((*point)[n], a[n]);
+    }
+    if (const auto to = differences.take()) return sign_of((*to)[0] * (*to)[3] - (*to)[1] * (*to)[2]);
     const Parts3 to_b = exact_difference(b, a), to_c = exact_difference(c, a);
     ExactSum sum;
     for (const double p : to_b[x]) {
