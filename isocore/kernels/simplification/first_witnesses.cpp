@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
 #include <vector>
 
+#include "common/lanes.hpp"
 #include "common/parallel_each.hpp"
+#include "common/vectors.hpp"
 #include "simplification/mesh.hpp"
 #include "simplification/morton.hpp"
 
 namespace isocore::simplification {
 namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // The reference's vertices that are not vertices of the input. Both are mostly in the same order.
 template <class Real>
@@ -42,37 +47,28 @@ Array<std::int32_t> others(const MeshArrays<Real>& input, const MeshArrays<Real>
     return out;
 }
 
-// The squared distance from the origin to a triangle. Follows C. Ericson, "Real-Time Collision Detection", 2005,
-// section 5.1.5: which corner, side or inside is nearest.
-float squared_distance(const Spot& a, const Spot& b, const Spot& c) {
-    const Spot ab = minus(b, a), ac = minus(c, a);
-    const float d1 = -dot(ab, a), d2 = -dot(ac, a), d3 = -dot(ab, b), d4 = -dot(ac, b), d5 = -dot(ab, c),
-                d6 = -dot(ac, c);
-    const auto along = [](const Spot& from, const Spot& way, float share) {
-        const Spot at{from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
+// The squared distances from the origin to eight triangles. Follows C. Ericson, "Real-Time Collision Detection", 2005,
+// section 5.1.5: which corner, side or inside is nearest; all of them are worked out, the first that holds is taken.
+Floats squared_distances(const Vector<Floats>& a, const Vector<Floats>& b, const Vector<Floats>& c) {
+    const Floats zero(0.0f);
+    const auto ab = minus(b, a), ac = minus(c, a);
+    const Floats d1 = zero - dot(ab, a), d2 = zero - dot(ac, a), d3 = zero - dot(ab, b), d4 = zero - dot(ac, b),
+                 d5 = zero - dot(ab, c), d6 = zero - dot(ac, c), beyond_b = d4 - d3, beyond_c = d5 - d6;
+    const auto along = [](const Vector<Floats>& from, const Vector<Floats>& way, const Floats& share) {
+        const auto at = plus(from, times(share, way));
         return dot(at, at);
     };
-    if (d1 <= 0 && d2 <= 0) return dot(a, a);
-    if (d3 >= 0 && d4 <= d3) return dot(b, b);
-    if (d6 >= 0 && d5 <= d6) return dot(c, c);
-    const float to_c = d1 * d4 - d3 * d2, to_b = d5 * d2 - d1 * d6, to_a = d3 * d6 - d5 * d4;
-    if (to_c <= 0 && d1 >= 0 && d3 <= 0) return along(a, ab, d1 / (d1 - d3));
-    if (to_b <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
-    if (to_a <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    const Spot normal = cross(ab, ac);
-    const float off = dot(normal, a);
-    return off * off / dot(normal, normal);
-}
-
-// The same to the box around it: no further.
-float squared_distance_to_box(const Spot& a, const Spot& b, const Spot& c) {
-    float out = 0;
-    for (std::size_t n = 0; n < 3; ++n) {
-        const float off =
-            std::max({0.0f, std::min({a[n], b[n], c[n]}), -std::max({a[n], b[n], c[n]})});  // one is positive at most
-        out += off * off;
-    }
-    return out;
+    const Floats to_c = d1 * d4 - d3 * d2, to_b = d5 * d2 - d1 * d6, to_a = d3 * d6 - d5 * d4;
+    const auto normal = cross(ab, ac);
+    const Floats off = dot(normal, a);
+    Floats out = off * off / dot(normal, normal);
+    out = choose((to_a <= zero) & (zero <= beyond_b) & (zero <= beyond_c),
+                 along(b, minus(c, b), beyond_b / (beyond_b + beyond_c)), out);
+    out = choose((to_b <= zero) & (zero <= d2) & (d6 <= zero), along(a, ac, d2 / (d2 - d6)), out);
+    out = choose((to_c <= zero) & (zero <= d1) & (d3 <= zero), along(a, ab, d1 / (d1 - d3)), out);
+    out = choose((zero <= d6) & (d5 <= d6), dot(c, c), out);
+    out = choose((zero <= d3) & (d4 <= d3), dot(b, b), out);
+    return choose((d1 <= zero) & (d2 <= zero), dot(a, a), out);
 }
 
 // Looks for the triangle nearest to a place.
@@ -111,7 +107,7 @@ class Nearest {
 
     void look_in(const Cell& cube) {
         index_.each_run_between(cube, cube, [&](std::uint32_t first, std::uint32_t end) {
-            for (std::uint32_t n = first; n < end; ++n) look_at(index_.entry(n));
+            for (; first < end; first += kLanes) look_at(first, std::min<std::size_t>(end - first, kLanes));
         });
     }
 
@@ -141,16 +137,36 @@ class Nearest {
         return is_all;
     }
 
-    void look_at(std::int32_t triangle) {
-        const std::int32_t* const c = mesh_.triangles + 3 * static_cast<std::size_t>(triangle);
-        const auto corner = [&](std::size_t n) { return relative(mesh_.place(c[n]), place_, stretch_); };
-        const Spot at = corner(0), next = corner(1), last = corner(2);
-        if (squared_distance_to_box(at, next, last) > best_) return;
-        const float squared = squared_distance(at, next, last);
-        if (squared < best_ || (squared == best_ && rank_of(triangle) < rank_of(found_))) {
-            best_ = squared;
-            found_ = triangle;
+    // Eight of the index's entries together, or as many as there are.
+    void look_at(std::uint32_t first, std::size_t count) {
+        std::array<std::array<float, kLanes>, 9> columns{};
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::int32_t* const c = mesh_.triangles + 3 * triangle_of(first + n);
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const Spot at = relative(mesh_.place(c[corner]), place_, stretch_);
+                for (std::size_t a = 0; a < 3; ++a) columns[3 * corner + a][n] = at[a];
+            }
         }
+        const auto corner = [&](std::size_t n) -> Vector<Floats> {
+            return {Floats(columns[3 * n].data()), Floats(columns[3 * n + 1].data()),
+                    Floats(columns[3 * n + 2].data())};
+        };
+        const Floats squared = squared_distances(corner(0), corner(1), corner(2)), infinity(kInfinity);
+        const Floats near = first_lanes(choose(squared <= Floats(best_), squared, infinity), count, infinity);
+        const float least = near.least_lane();
+        if (least == kInfinity) return;
+        for (unsigned bits = (near <= Floats(least)).bits(); bits != 0; bits &= bits - 1) {
+            const auto triangle =
+                static_cast<std::int32_t>(triangle_of(first + static_cast<std::size_t>(std::countr_zero(bits))));
+            if (least < best_ || (triangle != found_ && rank_of(triangle) < rank_of(found_))) {
+                best_ = least;
+                found_ = triangle;
+            }
+        }
+    }
+
+    std::size_t triangle_of(std::size_t entry) const {
+        return static_cast<std::size_t>(index_.entry(static_cast<std::uint32_t>(entry)));
     }
 
     // Where a triangle comes in the order of a Mesh: by its lowest vertex.
@@ -168,7 +184,7 @@ class Nearest {
     const Spot& stretch_;
     const std::array<Real, 3>& place_;
     Cell low_{0, 0, 0}, high_{-1, -1, -1};  // seen already
-    float best_ = std::numeric_limits<float>::infinity();
+    float best_ = kInfinity;
     std::int32_t found_ = kNone;
 };
 
