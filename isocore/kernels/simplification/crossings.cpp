@@ -106,10 +106,10 @@ void Crossings<Real>::find_triangles(const Star& star) {
     }
     const std::span<const std::int32_t> found = std::span(triangles_).first(triangle_count_ = count);
     for (const std::int32_t triangle : found) ISOCORE_PREFETCH(mesh_.triangles.data() + triangle);
-    for (const std::int32_t cube : cubes_) seen_cubes_.forget_near(cube);
-    for (const std::int32_t triangle : found) seen_triangles_.forget_near(triangle);
+    for (const std::int32_t cube : cubes_) seen_cubes_.remove(cube);
+    for (const std::int32_t triangle : found) seen_triangles_.remove(triangle);
     for (std::size_t n = 0; n < star.count; ++n) {
-        if (star.triangles[n] != kNone) seen_triangles_.forget_near(star.triangles[n]);
+        if (star.triangles[n] != kNone) seen_triangles_.remove(star.triangles[n]);
     }
     for (const std::int32_t triangle : found) {
         for (const std::int32_t corner : mesh_.triangles[static_cast<std::size_t>(triangle)].corners)

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/lanes.hpp"
@@ -16,27 +17,25 @@
 
 namespace isocore::simplification {
 
-// A set of numbers, a bit for each that there may be. kNone is always there.
+// A set of numbers, a byte for each that there may be: bits of one word would have to wait for each other. kNone is
+// always there.
 class NumberSet {
   public:
     // For numbers below `size`. What is in it stays.
-    void make_room(std::size_t size) { words_.resize(std::max(words_.size(), size / 64 + 2)); }
+    void make_room(std::size_t size) { numbers_.resize(std::max(numbers_.size(), size + 1)); }
 
     // False if it is there already.
-    bool add(std::int32_t number) {
-        std::uint64_t& word = words_[word_of(number)];
-        const std::uint64_t bit = std::uint64_t{1} << (static_cast<std::uint32_t>(number) % 64);
-        const bool is_new = (word & bit) == 0;
-        word |= bit;
-        return is_new;
-    }
-    // Takes it out, and perhaps others.
-    void forget_near(std::int32_t number) { words_[word_of(number)] = 0; }
+    bool add(std::int32_t number) { return std::exchange(numbers_[index_of(number)].is_new, false); }
+    void remove(std::int32_t number) { numbers_[index_of(number)].is_new = true; }
 
   private:
-    static std::size_t word_of(std::int32_t number) { return (static_cast<std::uint32_t>(number) + 64) / 64; }
+    struct Number {
+        bool is_new = true;
+    };
 
-    std::vector<std::uint64_t> words_{~std::uint64_t{0}};  // the first is that of kNone
+    static std::size_t index_of(std::int32_t number) { return static_cast<std::size_t>(number - kNone); }
+
+    std::vector<Number> numbers_{Number{false}};  // the first is kNone
 };
 
 template <class Real>
