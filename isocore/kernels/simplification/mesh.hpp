@@ -11,6 +11,7 @@
 
 #include "common/array.hpp"
 #include "common/predicates.hpp"
+#include "common/prefetch.hpp"
 #include "common/vectors.hpp"
 #include "simplification/cells.hpp"
 #include "simplification/quadric.hpp"
@@ -134,6 +135,14 @@ class Mesh {
     std::array<Real, 3> place_of(std::int32_t witness) const {
         const auto number = static_cast<std::size_t>(witness);
         return number < places.size() ? places[number].at : source(links[number - places.size()].from);
+    }
+    // Asks for that ahead of its use; of none, too.
+    void fetch(std::int32_t witness) const {
+        const auto number = static_cast<std::size_t>(std::max(witness, 0));
+        if (number < places.size())
+            ISOCORE_PREFETCH(places.data() + number);
+        else
+            ISOCORE_PREFETCH(links.data() + (number - places.size()));
     }
     std::int32_t next(std::int32_t witness) const {
         const auto number = static_cast<std::size_t>(witness);

@@ -18,6 +18,9 @@ void Witnesses::gather(const Mesh<Real>& mesh, const Ring& ring) {
         for (std::size_t a = 0; a < 3; ++a) places_[a][count] = at[a];
         ++count;
     };
+    for (std::size_t n = 0; n < ring.count; ++n) {
+        if (ring.triangles[n] != kNone) mesh.fetch(mesh.triangles[static_cast<std::size_t>(ring.triangles[n])].witness);
+    }
     if (!mesh.vertices[static_cast<std::size_t>(ring.centre)].on_curve) add(ring.centre);
     for (std::size_t n = 0; n < ring.count; ++n) {
         if (ring.triangles[n] == kNone) continue;
