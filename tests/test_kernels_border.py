@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import ast
 import gc
+import os
+import signal
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -138,3 +141,22 @@ def test_calls_from_several_threads_do_not_disturb_each_other(mesh: CellMesh) ->
         for one, other in zip(alone, together, strict=True):
             assert one.vertices.tobytes() == other.vertices.tobytes()
             assert one.triangles.tobytes() == other.triangles.tobytes()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="only where processes can be forked")
+def test_a_forked_process_walks_with_threads_of_its_own(mesh: CellMesh) -> None:
+    """An index has kept threads, which are not there in a process that is forked."""
+    ready = ready_index(mesh, build_index(mesh))
+    expected = ready.propagate(0.3, 2).triangles.tobytes()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of a process with threads that is forked
+        child = os.fork()
+    if child == 0:
+        try:
+            signal.alarm(60)  # ends it if it waits for ever
+            same = ready.propagate(0.3, 2).triangles.tobytes() == expected
+            del ready
+            os._exit(0 if same else 1)
+        finally:
+            os._exit(2)
+    assert os.waitpid(child, 0)[1] == 0

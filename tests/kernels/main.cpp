@@ -3,6 +3,7 @@
 
 void test_array();
 void test_bits();
+void test_crew();
 void test_crossing();
 void test_lanes();
 void test_selection();
@@ -27,6 +28,7 @@ void test_waves();
 int main() {
     test_array();
     test_bits();
+    test_crew();
     test_crossing();
     test_lanes();
     test_selection();

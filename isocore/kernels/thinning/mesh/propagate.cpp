@@ -39,11 +39,11 @@ struct Places {
 template <class Coordinate, class Value>
 class Propagation {
   public:
-    Propagation(const Field<Value>& field, const IndexView& index, double isovalue, Crew& crew, Scratch& scratch)
+    Propagation(const Field<Value>& field, const IndexView& index, double isovalue, int threads, Scratch& scratch)
         : field_(field),
           index_(index),
           isovalue_(isovalue),
-          crew_(crew),
+          crew_(scratch.crew_of(threads)),
           scratch_(scratch),
           tets_(field, index.tets, isovalue, scratch.tets),
           hexes_(field, index.hexes, isovalue, scratch.hexes) {}
@@ -235,8 +235,7 @@ class Propagation {
 template <class Coordinate, class Value>
 Mesh<Coordinate> propagate(const Field<Value>& field, const IndexView& index, double isovalue, int threads,
                            bool with_edges, Scratch& scratch) {
-    Crew crew(threads);
-    return Propagation<Coordinate, Value>(field, index, isovalue, crew, scratch).run(with_edges);
+    return Propagation<Coordinate, Value>(field, index, isovalue, threads, scratch).run(with_edges);
 }
 
 template <class Value>

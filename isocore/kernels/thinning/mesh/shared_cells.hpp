@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/array.hpp"
+#include "common/spin.hpp"
 
 namespace isocore::thinning {
 
@@ -46,11 +47,17 @@ class SharedCells {
         SharedCells& cells;
     };
 
-    // Waiting is a spin loop that yields: a whole walk may take less time than waking a thread that sleeps.
+    // Does not sleep: a whole walk may take less time than waking a thread.
     bool take(Array<std::int32_t>& lot) {
         waiting_.fetch_add(1, std::memory_order_relaxed);
-        for (;; std::this_thread::yield()) {
-            if (offered_.load(std::memory_order_relaxed) == 0 && working_.load(std::memory_order_relaxed) > 0) continue;
+        const auto may_go_on = [this] {
+            return offered_.load(std::memory_order_relaxed) > 0 || working_.load(std::memory_order_relaxed) == 0;
+        };
+        for (;;) {
+            if (!spin_until(may_go_on)) {
+                std::this_thread::yield();
+                continue;
+            }
             const std::lock_guard<std::mutex> lock(guard_);
             const bool found = !lots_.empty();
             // Threads start to work and give only while they hold the lock or work, so nothing can come any more.
