@@ -56,13 +56,21 @@ class Crew {
         if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     }
 
-    // Runs task(member, 0) ... task(member, count - 1), each on whichever member comes first.
+    // Runs task(member, 0) ... task(member, count - 1). Every member has a run of its own, which is the same whenever
+    // the count is, so that it finds what it wrote in a step before in its cache: to get that from another processor's
+    // takes longer than from memory. Who has done its run helps with the others.
     template <class Task>
     void share(std::size_t count, const Task& task) {
         if (count == 1) return task(0, 0);
-        std::atomic<std::size_t> next{0};
+        for (std::size_t n = 0; n < size_; ++n) {
+            runs_[n].next = n * count / size_;
+            runs_[n].end = (n + 1) * count / size_;
+        }
         together([&](std::size_t member) {
-            for (std::size_t n = next++; n < count; n = next++) task(member, n);
+            for (std::size_t n = 0; n < size_; ++n) {
+                Run& run = runs_[(member + n) % size_];
+                for (std::size_t taken = 0; run.take(taken);) task(member, taken);
+            }
         });
     }
 
@@ -76,6 +84,14 @@ class Crew {
         return 0;  // no process is forked here
 #endif
     }
+
+    // Tasks that are left, on a line of the cache of their own.
+    struct alignas(64) Run {
+        // Sets the next task unless there is none.
+        bool take(std::size_t& taken) { return next < end && (taken = next++) < end; }
+        std::atomic<std::size_t> next;
+        std::size_t end;
+    };
 
     static bool is_open(std::uint32_t turn) { return turn % 2 == 1; }
 
@@ -113,6 +129,7 @@ class Crew {
 
     std::size_t size_;
     long process_ = this_process();
+    std::vector<Run> runs_ = std::vector<Run>(size_);  // by member
     std::vector<std::thread> threads_;
     void (*work_)(const void*, std::size_t) = nullptr;
     const void* context_ = nullptr;
