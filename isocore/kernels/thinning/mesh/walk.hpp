@@ -112,7 +112,10 @@ class Walk {
             head = end;
             if (shared == nullptr || count - head < kSteps || !shared->wanted()) continue;
             const std::size_t kept = count - (count - head) / 2;
-            shared->give({queue.data() + kept, queue.data() + count});
+            std::int32_t* const cells = queue.data();
+            // The highest half, so that threads hardly come to the same part of the mesh.
+            std::nth_element(cells + head, cells + kept, cells + count);
+            shared->give({cells + kept, cells + count});
             count = kept;
         }
         return count;
