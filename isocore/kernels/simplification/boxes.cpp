@@ -73,7 +73,7 @@ class BoxFinder {
             if (triangle.is_gone()) continue;
             const auto box_of = [&](std::size_t n) { return box_of_[static_cast<std::size_t>(triangle.corners[n])]; };
             const std::uint32_t own = box_of(0);
-            if (options_.rounding == 0 && box_of(1) == own && box_of(2) == own) {  // as most are
+            if (own != kNoBox && box_of(1) == own && box_of(2) == own) {  // as most are
                 if (!boxes[own].vertices.empty()) boxes[own].triangles.push_back(static_cast<std::int32_t>(t));
                 continue;
             }
