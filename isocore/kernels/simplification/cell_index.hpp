@@ -15,7 +15,7 @@ namespace isocore::simplification {
 class CellIndex {
   public:
     // each_entry(visit) calls visit(triangle, number of a cell) for each cell of each of so many triangles, in
-    // ascending order of these; three times the same. dims: how many cells there are along each axis.
+    // ascending order of these; up to three times the same. dims: how many cells there are along each axis.
     template <class EachEntry>
     CellIndex(const std::array<std::size_t, 3>& dims, std::size_t triangles, const EachEntry& each_entry);
 
@@ -75,11 +75,13 @@ CellIndex::CellIndex(const std::array<std::size_t, 3>& dims, std::size_t triangl
     : dims_(dims) {
     const std::size_t words = dims[0] * dims[1] * dims[2] / 64 + 2;
     occupied_.assign(words, 0);
+    starts_.reserve(triangles + 1);  // room that stays empty takes no memory
     bool in_order = true;
     std::size_t entries = 0, last = 0;
     each_entry([&](std::int32_t, std::size_t cell) {
         occupied_[cell / 64] |= std::uint64_t{1} << cell % 64;
         in_order = in_order && cell >= last;
+        if (in_order && (entries == 0 || cell > last)) starts_.push_back(static_cast<std::uint32_t>(entries));
         last = cell;
         ++entries;
     });
@@ -89,9 +91,13 @@ CellIndex::CellIndex(const std::array<std::size_t, 3>& dims, std::size_t triangl
         ranks_[w] = rank;
         rank += static_cast<std::uint32_t>(std::popcount(occupied_[w]));
     }
-    starts_.assign(rank + 1, 0);
-    each_entry([&](std::int32_t, std::size_t cell) { ++starts_[rank_of(cell) + 1]; });
-    for (std::size_t n = 0; n < rank; ++n) starts_[n + 1] += starts_[n];
+    if (in_order) {
+        starts_.push_back(static_cast<std::uint32_t>(entries));
+    } else {
+        starts_.assign(rank + 1, 0);
+        each_entry([&](std::int32_t, std::size_t cell) { ++starts_[rank_of(cell) + 1]; });
+        for (std::size_t n = 0; n < rank; ++n) starts_[n + 1] += starts_[n];
+    }
     repeats_ = entries > triangles;
     if (in_order && entries == triangles) return;
     entries_.resize(entries);
