@@ -26,9 +26,9 @@ void Box::add(const Box& other) {
     }
 }
 
-// The triangles in these cells, each once: who counts how often the reference covers a point counts each once.
+// A sheet's triangles in these cells, each once: who counts how often the reference covers a point counts each once.
 template <class Real>
-void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& high) {
+void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& high, std::uint32_t sheet) {
     found_.clear();
     reference.index().each_run_between(low, high, [&](std::uint32_t first, std::uint32_t end) {
         const std::size_t known = found_.size();
@@ -39,6 +39,14 @@ void Patch::find(const Reference<Real>& reference, const Cell& low, const Cell& 
         for (std::uint32_t entry = first; entry < end; entry += kPerLine)
             ISOCORE_PREFETCH(reference.corners(run[entry]));
     });
+    if (reference.mesh().sheets != nullptr) {  // without branches, which would often be mispredicted
+        std::size_t kept = 0;
+        for (const std::int32_t triangle : found_) {
+            found_[kept] = triangle;
+            kept += static_cast<std::size_t>(reference.is_in(triangle, sheet));
+        }
+        found_.resize(kept);
+    }
     if (!reference.index().repeats()) return;
     std::sort(found_.begin(), found_.end());
     found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
@@ -94,14 +102,13 @@ void Patch::gather(const Reference<Real>& reference, Rows& rows, const Mesh<Real
     if constexpr (std::is_same_v<Real, float>) {
         if (rows.cover_all(low, high)) return gather_rows(reference, rows, mesh, origin, low, high);
     }
-    find(reference, low, high);
+    find(reference, low, high, sheet);
     for (const std::int32_t triangle : found_) ISOCORE_PREFETCH(reference.place(reference.corners(triangle)[1]));
     size_ = 0;
     if (found_.size() + kLanes > room_) make_room(2 * found_.size() + 16 * kLanes);
     float* to = numbers_.data();
     const std::size_t room = room_;
     for (const std::int32_t triangle : found_) {
-        if (!reference.is_in(triangle, sheet)) continue;
         const std::int32_t* const corners = reference.corners(triangle);
         for (std::size_t n = 0; n < 3; ++n) {
             const Real* const at = reference.place(corners[n]);

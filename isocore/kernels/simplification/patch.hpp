@@ -52,7 +52,7 @@ class Patch {
     void gather_rows(const Reference<float>& reference, Rows& rows, const Mesh<float>& mesh,
                      const std::array<float, 3>& origin, const Cell& low, const Cell& high);
     template <class Real>
-    void find(const Reference<Real>& reference, const Cell& low, const Cell& high);
+    void find(const Reference<Real>& reference, const Cell& low, const Cell& high, std::uint32_t sheet);
     void make_room(std::size_t size);
     std::size_t make_room_for(const Patch& from);
     void end();
