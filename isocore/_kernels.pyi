@@ -87,8 +87,6 @@ class SimplifiedMesh(NamedTuple):
 # each axis at most, once it is brought back.
 class Writing:
     def __init__(self, affine: _Float64, is_single: bool, rounding: float) -> None: ...
-    @property
-    def rounding(self) -> float: ...
 
 def simplify(
     vertices: _Real,

@@ -196,10 +196,9 @@ void bind_labels(nb::module_& module) {
             "simplify",
             [=](LabelSurfaces& all, double max_error, const std::array<double, 3>& stretch,
                 const std::array<double, 3>& other, std::size_t most_triangles, const Writing* writing, int threads) {
-                const Writing as_is;
-                return all.simplify(
-                    {max_error, stretch, 1.0, other, most_triangles, writing ? *writing : as_is, threads},
-                    simplified_labels);
+                return all.simplify({max_error, stretch, 1.0, other, most_triangles,
+                                     writing == nullptr ? Writing{} : *writing, threads},
+                                    simplified_labels);
             },
             arg("max_error"), arg("stretch") = std::array<double, 3>{1, 1, 1},
             arg("other") = std::array<double, 3>{1, 1, 1}, arg("most_triangles") = 0,

@@ -67,8 +67,7 @@ void bind_simplification(nb::module_& module) {
             [](Writing* made, const AffineArray& affine, bool is_single, double rounding) {
                 new (made) Writing{to_affine(affine), is_single, rounding};
             },
-            nb::arg("affine").noconvert(), nb::arg("is_single"), nb::arg("rounding"))
-        .def_ro("rounding", &Writing::rounding);
+            nb::arg("affine").noconvert(), nb::arg("is_single"), nb::arg("rounding"));
     bind<float>(module, simplified);
     bind<double>(module, simplified);
 }

@@ -14,8 +14,8 @@ namespace {
 template <class Real>
 class BoxFinder {
   public:
-    BoxFinder(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, const Options& options)
-        : mesh_(mesh), cells_(cells), shift_(shift), options_(options), box_of_(mesh.vertex_count()) {
+    BoxFinder(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, int threads)
+        : mesh_(mesh), cells_(cells), shift_(shift), threads_(threads), box_of_(mesh.vertex_count()) {
         for (std::size_t a = 0; a < 3; ++a) dims_[a] = cells.dims[a] / kBoxCells + 2;
     }
 
@@ -49,7 +49,7 @@ class BoxFinder {
     template <class Visit>
     void each_vertex(const Visit& visit) const {
         constexpr std::size_t kAtOnce = 16384;
-        parallel_each(options_.threads, mesh_.vertex_count(), kAtOnce, visit);
+        parallel_each(threads_, mesh_.vertex_count(), kAtOnce, visit);
     }
 
     // The box of a place that is moved by a step along each axis.
@@ -116,7 +116,7 @@ class BoxFinder {
     Mesh<Real>& mesh_;
     const Cells& cells_;
     const Cell& shift_;
-    const Options& options_;
+    int threads_;
     std::array<std::size_t, 3> dims_;    // in boxes
     std::vector<std::uint32_t> box_of_;  // of each vertex
 };
@@ -124,11 +124,11 @@ class BoxFinder {
 }  // namespace
 
 template <class Real>
-std::vector<MeshBox> find_boxes(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, const Options& options) {
-    return BoxFinder<Real>(mesh, cells, shift, options).find();
+std::vector<MeshBox> find_boxes(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, int threads) {
+    return BoxFinder<Real>(mesh, cells, shift, threads).find();
 }
 
-template std::vector<MeshBox> find_boxes(Mesh<float>&, const Cells&, const Cell&, const Options&);
-template std::vector<MeshBox> find_boxes(Mesh<double>&, const Cells&, const Cell&, const Options&);
+template std::vector<MeshBox> find_boxes(Mesh<float>&, const Cells&, const Cell&, int);
+template std::vector<MeshBox> find_boxes(Mesh<double>&, const Cells&, const Cell&, int);
 
 }  // namespace isocore::simplification

@@ -17,8 +17,8 @@ struct MeshBox {
 };
 
 // Those in which vertices may move, which are noted in the mesh; boxes with many of them come first. shift: how many
-// cells the boxes begin before the first cell, along each axis. Of options, the rounding and the threads count.
+// cells the boxes begin before the first cell, along each axis.
 template <class Real>
-std::vector<MeshBox> find_boxes(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, const Options& options);
+std::vector<MeshBox> find_boxes(Mesh<Real>& mesh, const Cells& cells, const Cell& shift, int threads);
 
 }  // namespace isocore::simplification

@@ -73,21 +73,18 @@ struct Cells {
     double in_cells(double coordinate, std::size_t axis) const { return (coordinate - origin[axis]) * per_cell; }
 
     // The cell of a place, clamped to those that there are.
+    // step: how far the place is moved along each axis.
     template <class Real>
-    Cell at(const Real* place) const {
+    Cell at(const Real* place, double step = 0) const {
         Cell out;
-        for (std::size_t a = 0; a < 3; ++a) out[a] = clamped(in_cells(static_cast<double>(place[a]), a), a);
+        for (std::size_t a = 0; a < 3; ++a) out[a] = clamped(in_cells(static_cast<double>(place[a]) + step, a), a);
         return out;
     }
     // That for which a vertex counts where boxes are made of cells. Where there is a margin, boxes begin and end a
     // little before their cells do: with many vertices on whole coordinates, all of those would be too near to walls.
-    // step: how far the vertex is moved along each axis.
     template <class Real>
     Cell home(const Real* place, double step = 0) const {
-        Cell out;
-        for (std::size_t a = 0; a < 3; ++a)
-            out[a] = clamped(in_cells(static_cast<double>(place[a]) + (2 * margin + step), a), a);
-        return out;
+        return at(place, 2 * margin + step);
     }
     // The first cell in which places may lie that have their home in the cells from `low` on.
     Cell first_of_home(Cell low) const {

@@ -159,7 +159,7 @@ class Simplification {
     void run(int phase) {
         Cell shift = kShifts[static_cast<std::size_t>(phase)];
         for (std::int32_t& quarters : shift) quarters *= kBoxCells / 4;
-        std::vector<MeshBox> boxes = find_boxes(mesh_, cells_, shift, options_);
+        std::vector<MeshBox> boxes = find_boxes(mesh_, cells_, shift, options_.threads);
         return_freed_memory();
         std::atomic<std::size_t> next{0};
         parallel_for(options_.threads, std::min(workers_.size(), boxes.size()), [&](std::size_t worker) {
